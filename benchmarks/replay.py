@@ -91,7 +91,7 @@ def parts_of(results, job):
     ]
 
 
-def on(cores, jobs, seconds, parts):
+def jobs_on(cores, jobs, seconds, parts):
     """Return the jobs and their seconds on so many cores.
 
     A part that is shared among k processes takes at most its sum / k and, of its longest piece, the rest. The jobs were
@@ -113,15 +113,15 @@ def on_other_cores(config):
     run, seconds = recorded(config)
     jobs = run.jobs
     parts = {number: parts_of(run.results, job) for number, job in jobs.items()}
-    alone = sum(on(1, jobs, seconds, parts)[1].values())
+    alone = sum(jobs_on(1, jobs, seconds, parts)[1].values())
     print(f"{run.results}: {len(jobs)} jobs\n\n| cores | seconds | faster |\n|------:|--------:|-------:|")
     for cores in (2**power for power in range(9)):
-        took = max(schedule(*on(cores, jobs, seconds, parts), cores).values())
+        took = max(schedule(*jobs_on(cores, jobs, seconds, parts), cores).values())
         print(f"| {cores:5d} | {took:7.1f} | {alone / took:6.1f} |")
     print("\nthe longest chain:")
     many = 1000 * len(jobs)
     # No job waits for a core.
-    least = on(many, jobs, seconds, parts)[1]
+    least = jobs_on(many, jobs, seconds, parts)[1]
     ends = schedule(jobs, least, many)
     number = max(ends, key=ends.get)
     while number is not None:

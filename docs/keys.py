@@ -170,7 +170,7 @@ def _(allowed: Keys) -> Schema:
 def _(allowed: Named) -> Schema:
     least = {"minProperties": allowed.least} if allowed.least else {}
     names = {"propertyNames": {"pattern": schema_of(allowed.name).get("pattern", "")}}
-    return {"type": "object", **least, **names, "additionalProperties": schema_of(allowed.each)}
+    return {"type": "object", **least, **names, "additionalProperties": schema_of(allowed.element)}
 
 
 @schema_of.register
@@ -216,7 +216,7 @@ def _(allowed: SpringsFile) -> Schema:
 def _(allowed: Several) -> Schema:
     limits = {"minItems": allowed.least, "maxItems": allowed.most, "uniqueItems": allowed.distinct}
     bounds = {key: limit for key, limit in limits.items() if limit and limit != Several.most}
-    return {"type": "array", **bounds, "items": schema_of(allowed.each)}
+    return {"type": "array", **bounds, "items": schema_of(allowed.element)}
 
 
 @schema_of.register

@@ -125,7 +125,7 @@ def limits(kind, name):
     if isinstance(allowed, TrueOrFalse):
         return [True, False], [0, 1, "true", None]
     if isinstance(allowed, Several):
-        inner = allowed.each
+        inner = allowed.element
         least = np.nextafter(inner.least, np.inf) if inner.above else inner.least
         return [(least, inner.most)], [(), (least, least), least, (inner.most, math.nan), (inner.most + 1.0,), "x"]
     assert isinstance(allowed, Number)

@@ -37,19 +37,19 @@ TIMES = np.arange(250.0, 12001.0, 250.0)
 
 def vertices() -> dict[tuple[int, ...], np.ndarray]:
     """Return the vertices of the polyhedron of amplitudes, by the three faces on which each lies."""
-    found = {}
+    corners = {}
     for faces in combinations(range(5), 3):
         rows = FACES[list(faces)]
         if abs(np.linalg.det(rows)) > 1e-9:
             vertex = np.linalg.solve(rows, EDGE[list(faces)])
             if (FACES @ vertex <= EDGE + 1e-9).all():
-                found[faces] = vertex
-    return found
+                corners[faces] = vertex
+    return corners
 
 
 def averaged_amplitudes(amplitude: np.ndarray, a: float, times: np.ndarray) -> np.ndarray:
     """Return amplitudes of the averaged equations at some times, by steps of up to 2 that are projected back."""
-    found, clock = [], 0.0
+    amplitudes, clock = [], 0.0
     for time in times:
         steps = math.ceil((time - clock) / 2.0)
         step = (time - clock) / steps
@@ -62,8 +62,8 @@ def averaged_amplitudes(amplitude: np.ndarray, a: float, times: np.ndarray) -> n
             amplitude = np.maximum(amplitude + step * rate, 0.0)
             amplitude = amplitude / max(1.0, float((FACES[:2] @ amplitude).max()))
         clock = time
-        found.append(amplitude)
-    return np.array(found)
+        amplitudes.append(amplitude)
+    return np.array(amplitudes)
 
 
 def simulated_amplitudes(amplitude: np.ndarray, a: float, times: np.ndarray) -> np.ndarray:
@@ -72,7 +72,7 @@ def simulated_amplitudes(amplitude: np.ndarray, a: float, times: np.ndarray) -> 
     position, velocity = SHAPE @ (V * amplitude / FREQUENCY * np.sin(phase)), SHAPE @ (V * amplitude * np.cos(phase))
     runner = Runner(Model(Chain(3), law_of("linearized", a), V))
     runner.begin(ChainState(position, V + velocity, np.zeros(3, dtype=bool)))
-    found = []
+    amplitudes = []
     for time in times:
         rows = []
         for at in time - 40.0 + np.arange(40.0):
@@ -81,8 +81,8 @@ def simulated_amplitudes(amplitude: np.ndarray, a: float, times: np.ndarray) -> 
             rows.append(
                 np.hypot(FREQUENCY * np.linalg.solve(SHAPE, state.position), np.linalg.solve(SHAPE, state.velocity - V))
             )
-        found.append(np.mean(rows, axis=0) / V)
-    return np.array(found)
+        amplitudes.append(np.mean(rows, axis=0) / V)
+    return np.array(amplitudes)
 
 
 def random_amplitudes(rng: np.random.Generator) -> np.ndarray:
@@ -97,7 +97,7 @@ def compare_random_state(seed: int) -> tuple[float, bool]:
     """Return the largest difference of an amplitude at TIMES, in units of v, and whether both reach the same vertex."""
     start = random_amplitudes(np.random.default_rng(seed))
     both = [of(start, A, TIMES) for of in (averaged_amplitudes, simulated_amplitudes)]
-    first, second = (np.abs(ATTRACTORS - found[-1]).max(axis=1).argmin() for found in both)
+    first, second = (np.abs(ATTRACTORS - amplitudes[-1]).max(axis=1).argmin() for amplitudes in both)
     return float(np.abs(both[1] - both[0]).max()), bool(first == second)
 
 

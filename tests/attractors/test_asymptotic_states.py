@@ -30,9 +30,9 @@ def pair(law, a):
 def test_slow_synchrony_is_synchrony(law, a):
     """Near the loss of stability, located with 40 digits, synchronization takes far longer than any run."""
     assert -1e-3 < two_block_exponent(law, a) < 0.0
-    (found,) = asymptotic_states(pair(law, a), [APART])
-    assert (found.kind, found.section_period) == (MotionKind.SYNCHRONIZED, 1)
-    assert found.mean_distance < 1e-7
+    (state,) = asymptotic_states(pair(law, a), [APART])
+    assert (state.kind, state.section_period) == (MotionKind.SYNCHRONIZED, 1)
+    assert state.mean_distance < 1e-7
     assert simulate(pair(law, a), initial=APART, transient=3000.0, window=7000.0).mean_distance > 5e-5
 
 
@@ -50,14 +50,14 @@ def test_only_states_close_to_synchrony_count_as_approaching_it(v, apart, kind):
     model = Model(Chain(3), law_of("linearized", 0.05), v)
     on_it = synchronized_orbit(model).reference
     end = replace(on_it, position=on_it.position + np.array([0.0, 0.0, apart]))
-    found = module._slow_synchrony(model, end, SEARCH, MOTION)
-    assert found.kind == kind
+    state = module._slow_synchrony(model, end, SEARCH, MOTION)
+    assert state.kind == kind
 
 
 def test_states_do_not_synchronize_where_synchrony_repels():
     assert two_block_exponent("linearized", 0.05013) > 0.0
-    (found,) = asymptotic_states(pair("linearized", 0.05013), [APART])
-    assert found.kind != MotionKind.SYNCHRONIZED
+    (state,) = asymptotic_states(pair("linearized", 0.05013), [APART])
+    assert state.kind != MotionKind.SYNCHRONIZED
 
 
 @pytest.mark.parametrize(("law", "a", "state"), [("linearized", 0.115, 0), ("nonlinear", 0.155, 3)])
@@ -66,12 +66,12 @@ def test_transient_chaos_ends_on_an_orbit(law, a, state):
     model = pair(law, a)
     early = simulate(model, initial=STATES[state], transient=3000.0, window=7000.0)
     assert early.lyapunov_exponent[0] > 3.0 * early.lyapunov_error[0]
-    found = asymptotic_states(model, STATES)[state]
-    assert found.kind == MotionKind.PERIODIC
+    asymptotic = asymptotic_states(model, STATES)[state]
+    assert asymptotic.kind == MotionKind.PERIODIC
     (later,) = advance(model, [model.begin(STATES[state])], 100_000.0)
     orbit = limit_cycle(model, later)
     options = {"transient": 100_000.0, "window": 20.0 * orbit.period, "batches": 10, "lyapunov_exponents": 0}
-    assert found.mean_distance == pytest.approx(
+    assert asymptotic.mean_distance == pytest.approx(
         simulate(model, initial=STATES[state], **options).mean_distance, rel=0.02
     )
 
@@ -79,26 +79,26 @@ def test_transient_chaos_ends_on_an_orbit(law, a, state):
 @pytest.mark.slow
 def test_weak_chaos_is_chaos_from_every_state_that_reaches_it():
     """In runs of the usual length some of these look like a torus; a window of 400 000 distinguishes them from one."""
-    found = asymptotic_states(pair("linearized", 0.08), STATES)
-    inner = [k for k in range(8) if found[k].mean_distance < 0.1]
+    states = asymptotic_states(pair("linearized", 0.08), STATES)
+    inner = [k for k in range(8) if states[k].mean_distance < 0.1]
     assert inner == [0, 2, 4, 5, 7]
-    assert {found[k] for k in inner} == {found[0]}
-    assert found[0].kind == MotionKind.CHAOTIC
+    assert {states[k] for k in inner} == {states[0]}
+    assert states[0].kind == MotionKind.CHAOTIC
     for k in inner[:2]:
         long = simulate(
             pair("linearized", 0.08), initial=STATES[k], transient=20_000.0, window=400_000.0, events="none"
         )
         assert long.lyapunov_exponent[0] > max(1e-3, 5.0 * long.lyapunov_error[0])
-        error = math.hypot(long.mean_distance_error, found[0].mean_distance_error)
-        assert found[0].mean_distance == pytest.approx(long.mean_distance, abs=4.0 * error)
+        error = math.hypot(long.mean_distance_error, states[0].mean_distance_error)
+        assert states[0].mean_distance == pytest.approx(long.mean_distance, abs=4.0 * error)
     # In the window of the search the error would be half a percent.
-    assert found[0].mean_distance_error < 2e-3 * found[0].mean_distance
+    assert states[0].mean_distance_error < 2e-3 * states[0].mean_distance
 
 
 def test_states_are_followed_out_of_transient_chaos(monkeypatch):
     """At a = 0.18 (linearized) chaos persists; if it is declared transient, its states remain undetermined."""
     model = pair("linearized", 0.18)
-    chaotic = [k for k, found in enumerate(asymptotic_states(model, STATES)) if found.kind == MotionKind.CHAOTIC]
+    chaotic = [k for k, states in enumerate(asymptotic_states(model, STATES)) if states.kind == MotionKind.CHAOTIC]
     assert chaotic == [0, 3, 7]
 
     def dying(model, attractors, settings):
@@ -106,21 +106,21 @@ def test_states_are_followed_out_of_transient_chaos(monkeypatch):
         return [Lifetime(9, 900.0) if kind == MotionKind.CHAOTIC else None for kind in kinds]
 
     monkeypatch.setattr(module, "lifetimes", dying)
-    found = asymptotic_states(model, STATES)
-    assert {k for k in range(8) if repr(found[k]) == repr(AsymptoticState())} == {*chaotic}
-    assert {found[k].kind for k in range(8) if k not in chaotic} == {MotionKind.PERIODIC}
+    states = asymptotic_states(model, STATES)
+    assert {k for k in range(8) if repr(states[k]) == repr(AsymptoticState())} == {*chaotic}
+    assert {states[k].kind for k in range(8) if k not in chaotic} == {MotionKind.PERIODIC}
     # Under the nonlinear law chaos at a = 0.2 ends, in a run of the fourth state within its window.
     monkeypatch.undo()
-    assert {found.kind for found in asymptotic_states(pair("nonlinear", 0.2), STATES)} == {MotionKind.PERIODIC}
+    assert {states.kind for states in asymptotic_states(pair("nonlinear", 0.2), STATES)} == {MotionKind.PERIODIC}
 
 
 def test_the_average_over_chaos_that_ends_is_not_used(monkeypatch):
     model = pair("linearized", 0.18)
     whole = asymptotic_states(model, STATES[:1])[0]
-    own = module.label
+    original = module.label
 
     def gone(model, attractors, starts, time_limit):
-        labels, times = own(model, attractors, starts, time_limit)
+        labels, times = original(model, attractors, starts, time_limit)
         return (labels * 0 + UNDETERMINED if time_limit == SEARCH.time_limit else labels), times
 
     monkeypatch.setattr(module, "label", gone)
@@ -142,9 +142,9 @@ def test_the_average_over_chaos_and_its_mirror_image_is_used(script_answers, at,
     script_answers(module, "run", [long])
     script_answers(module, "label", [(np.array([at]), None)])
     model = Model(Chain(3), law_of("linearized", 0.08))
-    found = module._state_on(model, [*chaos, stand_in(partner=2)], 0, SEARCH)
-    assert found.kind == MotionKind.CHAOTIC
-    assert (found.mean_distance, found.mean_distance_error) == ((0.2, 0.01) if whole else (0.3, 0.0))
+    state = module._state_on(model, [*chaos, stand_in(partner=2)], 0, SEARCH)
+    assert state.kind == MotionKind.CHAOTIC
+    assert (state.mean_distance, state.mean_distance_error) == ((0.2, 0.01) if whole else (0.3, 0.0))
 
 
 def test_mirror_images_have_the_same_numbers(monkeypatch):
@@ -173,7 +173,7 @@ def test_states_that_are_followed_further_obey_the_start_convention(monkeypatch,
 def test_a_state_that_does_not_settle_is_undetermined():
     """Without weakening of friction the last slip never ends."""
     settings = replace(SEARCH, transient=200.0, window=200.0, time_limit=500.0)
-    (found,) = asymptotic_states(pair("linearized", 0.0), [APART], settings)
-    assert repr(found) == repr(AsymptoticState())
+    (state,) = asymptotic_states(pair("linearized", 0.0), [APART], settings)
+    assert repr(state) == repr(AsymptoticState())
     uneven = Model(Chain(2, threshold=(1.0, 0.9)), law_of("linearized", 0.0))
     assert asymptotic_states(uneven, [APART], settings)[0].kind == MotionKind.UNDETERMINED

@@ -36,9 +36,9 @@ def states(count, seed=5):
 @pytest.fixture(scope="module")
 def search():
     """The attractors of the linearized law at a = 0.08, found from a few states."""
-    found = Search(model(), SETTINGS)
-    found.labels([model().begin(state) for state in states(40)])
-    return found
+    whole = Search(model(), SETTINGS)
+    whole.labels([model().begin(state) for state in states(40)])
+    return whole
 
 
 def test_labels_hold_for_whole_runs(search):
@@ -61,33 +61,33 @@ def test_a_discovery_is_compared_with_undecided_states_only(monkeypatch):
     calls = []
 
     def recorded(model, attractors, position, *rest):
-        found = label_arrays(model, attractors, position, *rest)
-        calls.append(([item.motion for item in attractors], len(position), int((found[0] < 0).sum()), rest[-1]))
-        return found
+        whole = label_arrays(model, attractors, position, *rest)
+        calls.append(([item.motion for item in attractors], len(position), int((whole[0] < 0).sum()), rest[-1]))
+        return whole
 
     monkeypatch.setattr(search_module, "label_arrays", recorded)
-    found = Search(model(), SETTINGS)
-    labels = found.labels([model().begin(state) for state in states(40)], check=False)
-    assert len(found.attractors) >= 3
+    whole = Search(model(), SETTINGS)
+    labels = whole.labels([model().begin(state) for state in states(40)], check=False)
+    assert len(whole.attractors) >= 3
     quick = [call for call in calls if call[3] == 0.3 * SETTINGS.transient]
-    seen = [motion for motions, *_ in quick for motion in motions]
-    assert len({*map(id, seen)}) == len(seen) == len(found.attractors)
+    compared = [motion for motions, *_ in quick for motion in motions]
+    assert len({*map(id, compared)}) == len(compared) == len(whole.attractors)
     # Each call takes the states that the one before has left.
     assert quick[0][1] <= 40
     assert [count for _, count, *_ in quick[1:]] == [left for _, _, left, _ in quick[:-1]]
     assert (labels >= 0).all()
-    assert (found.known_labels([model().begin(state) for state in states(40)]) == labels).all()
+    assert (whole.known_labels([model().begin(state) for state in states(40)]) == labels).all()
 
 
 def test_mirrored_states_reach_mirrored_attractors():
     """Beyond the loss of synchrony, at a = 0.1, there is a mirror pair."""
-    found = Search(model(a=0.1), SETTINGS)
-    starts = [found.model.begin(state) for state in states(30)]
-    labels = found.labels(starts)
-    partners = np.array([attractor.partner for attractor in found.attractors])
+    whole = Search(model(a=0.1), SETTINGS)
+    starts = [whole.model.begin(state) for state in states(30)]
+    labels = whole.labels(starts)
+    partners = np.array([attractor.partner for attractor in whole.attractors])
     assert (partners[partners] == np.arange(len(partners))).all()
-    assert {ASYMMETRIC, SYMMETRIC} <= {attractor.symmetry for attractor in found.attractors}
-    mirrored, _ = label(found.model, found.attractors, [start.mirrored() for start in starts], 20000.0)
+    assert {ASYMMETRIC, SYMMETRIC} <= {attractor.symmetry for attractor in whole.attractors}
+    mirrored, _ = label(whole.model, whole.attractors, [start.mirrored() for start in starts], 20000.0)
     assert (mirrored == partners[labels]).all()
     assert len(set(labels)) >= 3
 
@@ -99,9 +99,9 @@ def test_an_unstable_motion_is_not_an_attractor():
     assert Classifier(unstable.model, 2000.0, 1000.0, MOTION).measure(symmetric).mean_distance == 0.0
     assert visit(unstable.model, symmetric, 2000.0, 1000.0).is_settled(1e-6, 1e-3)
     index = unstable.reach(symmetric)
-    found = unstable.attractors[index]
-    assert found.symmetry == ASYMMETRIC
-    assert found.motion.mean_distance == pytest.approx(0.0314, abs=2e-4)
+    attractor = unstable.attractors[index]
+    assert attractor.symmetry == ASYMMETRIC
+    assert attractor.motion.mean_distance == pytest.approx(0.0314, abs=2e-4)
     index = stable.reach(symmetric)
     assert stable.attractors[index].symmetry == SYNCHRONIZED
 
@@ -125,18 +125,18 @@ def test_perturbations_within_the_capture_radius_return(search):
 def test_a_motion_lies_on_its_own_attractor_only(search):
     for index, attractor in enumerate(search.attractors):
         again = visit(search.model, attractor.motion.state(), 500.0, 1000.0)
-        others = [other.motion for k, other in enumerate(search.attractors) if k not in (index, attractor.partner)]
+        motions = [other.motion for k, other in enumerate(search.attractors) if k not in (index, attractor.partner)]
         assert is_on_attractor(again, attractor.motion, 1e-3, 1e-6)
         assert search.reach(again.state()) in (index, attractor.partner)
-        assert not any(is_on_attractor(again, other, 1e-3, 1e-6) for other in others)
+        assert not any(is_on_attractor(again, other, 1e-3, 1e-6) for other in motions)
 
 
 def test_an_orbit_embedded_in_chaos_is_distinguished_from_it():
     """Nonlinear law, a = 0.2075: `minus` ends on an orbit of 11 returns, most nearby states in the chaos around it."""
-    found = Search(model("nonlinear", 0.2075), dataclasses.replace(SETTINGS, transient=3000.0, window=3000.0))
-    starts = [found.model.begin(state) for state in (*states(5), PAPER_STATES["minus"], PAPER_STATES["plus"])]
-    labels = found.labels(starts)
-    means = [attractor.motion.mean_distance for attractor in found.attractors]
+    embedded = Search(model("nonlinear", 0.2075), dataclasses.replace(SETTINGS, transient=3000.0, window=3000.0))
+    starts = [embedded.model.begin(state) for state in (*states(5), PAPER_STATES["minus"], PAPER_STATES["plus"])]
+    labels = embedded.labels(starts)
+    means = [attractor.motion.mean_distance for attractor in embedded.attractors]
     for initial, index in (("minus", labels[-2]), ("plus", labels[-1])):
         run = simulate("nonlinear", 0.2075, initial, transient=20000.0, window=4000.0, lyapunov_exponents=0)
         assert run.mean_distance == pytest.approx(means[index], abs=max(1e-3, 4 * run.mean_distance_error))
@@ -146,13 +146,13 @@ def test_an_orbit_embedded_in_chaos_is_distinguished_from_it():
 def test_chaos_of_high_dimension_is_an_attractor():
     """Its returns are so far apart that few states are close to one of them; its lifetime is 1.8 million."""
     chain = Chain(4, 1.657, [1.459, 0.817, 0.902, 0.501], [1.036, 1.205, 1.448, 1.439])
-    found = Search(Model(chain, law_of("carlson_langer", 0.525, {"sigma": 0.1})), SearchSettings(samples=10))
-    labels = found.labels(found.starts((), "moving"))
-    (chaos,) = found.attractors
+    high = Search(Model(chain, law_of("carlson_langer", 0.525, {"sigma": 0.1})), SearchSettings(samples=10))
+    labels = high.labels(high.starts((), "moving"))
+    (chaos,) = high.attractors
     assert chaos.motion.kind == MotionKind.CHAOTIC
     assert chaos.radius == chaos.motion.spacing > Capture().largest
     assert (labels == 0).all()
-    (lived,) = lifetimes(found.model, found.attractors, found.settings)
+    (lived,) = lifetimes(high.model, high.attractors, high.settings)
     assert lived.ends == 0
 
 
@@ -164,18 +164,18 @@ def test_the_linearized_law_is_the_same_at_any_driver_velocity(v):
     scaled = Search(Model(Chain(3), law_of("linearized", 0.05), v), SETTINGS, motion)
     starts = [reference.model.begin(state) for state in states(25)]
     factor = v / 0.1
-    others = [ChainState(factor * start.position, factor * start.velocity, start.stuck) for start in starts]
-    first, second = reference.labels(starts), scaled.labels(others)
+    rescaled = [ChainState(factor * start.position, factor * start.velocity, start.stuck) for start in starts]
+    first, second = reference.labels(starts), scaled.labels(rescaled)
     assert len(reference.attractors) == len(scaled.attractors) >= 2
     assert (first == second).mean() > 0.95
 
 
 def test_no_attractor_is_reached_if_no_block_ever_stops():
     """Without weakening of friction, near uniform sliding, no block ever stops."""
-    found = Search(model(a=0.0), SETTINGS)
+    still = Search(model(a=0.0), SETTINGS)
     sliding = InitialState("sliding", (-0.83, -0.66, -0.84), (0.1, 0.1, 0.1))
-    assert found.labels([found.model.begin(sliding)]).tolist() == [-1]
-    assert found.attractors == []
+    assert still.labels([still.model.begin(sliding)]).tolist() == [-1]
+    assert still.attractors == []
 
 
 def test_samples_and_intervals():
@@ -227,10 +227,10 @@ def test_a_weakly_attracting_orbit_is_distinguished_from_a_torus(law, a, closes)
 def test_orbits_to_which_perturbations_return_quickly_are_not_a_slow_set():
     """Linearized law, a = 0.2125: two mirror pairs, of periods 20 and 40, within 0.005 of each other."""
     chosen = model(a=0.2125)
-    found, _ = find_attractors(chosen, dataclasses.replace(SEARCH, samples=60))
-    pairs = [item for item in found if item.motion.section_period in (20, 40)]
+    attractors, _ = find_attractors(chosen, dataclasses.replace(SEARCH, samples=60))
+    pairs = [item for item in attractors if item.motion.section_period in (20, 40)]
     assert [item.symmetry for item in pairs] == [ASYMMETRIC] * 4
-    assert not any(item.slow for item in found)
+    assert not any(item.slow for item in attractors)
     for item in pairs:
         later = visit(chosen, item.motion.state(), 50_000.0, 3000.0)
         assert later.has_periodic_spacing(1e-9)
@@ -250,8 +250,8 @@ def test_orbits_to_which_perturbations_return_quickly_are_not_a_slow_set():
 )
 def test_runs_of_any_model_end_on_its_attractors(found_model):
     settings = dataclasses.replace(SETTINGS, samples=12)
-    given = InitialState("given", (-0.9,) * found_model.blocks, (0.1,) * found_model.blocks)
-    reached, labels = find_attractors(found_model, settings, starts=[given])
+    initial = InitialState("given", (-0.9,) * found_model.blocks, (0.1,) * found_model.blocks)
+    reached, labels = find_attractors(found_model, settings, starts=[initial])
     assert labels.shape == (13,)
     assert len(reached) >= 1
     assert (labels >= 0).sum() >= 10

@@ -22,8 +22,8 @@ def label_one_by_one(model, attractors, starts, end):
             solver.begin(start)
             streak = 0
             while streak < item.close_returns and solver.run(times[k], item.motion.block - 1) == Status.HALTED:
-                here = solver.state().vector()
-                near = (np.abs(item.motion.returns - here) <= item.radius).all(axis=1).any()
+                vector = solver.state().vector()
+                near = (np.abs(item.motion.returns - vector) <= item.radius).all(axis=1).any()
                 streak = streak + 1 if near else 0
             if streak >= item.close_returns and solver.clock < times[k]:
                 labels[k], times[k] = index, solver.clock
@@ -66,7 +66,7 @@ def test_the_distance_from_a_cloud_is_exact_to_the_last_bit():
     clouds = [generator.uniform(-0.3, 0.3, (500, 6)), np.zeros((0, 6)), orbit, generator.uniform(-1, 1, (1, 6))]
     radius = [0.1, 1.0, 0.02, 0.25]
     kernel = Clouds(clouds, 6, radius)
-    found = 0
+    count = 0
     for index, (cloud, limit) in enumerate(zip(clouds, radius, strict=True)):
         states = generator.uniform(-0.4, 0.4, (300, 6))
         if len(cloud):
@@ -76,5 +76,5 @@ def test_the_distance_from_a_cloud_is_exact_to_the_last_bit():
             first = (cloud[:, 0] >= state[0] - limit) & (cloud[:, 0] <= state[0] + limit)
             expected = bool(((np.abs(cloud - state)[:, 1:] <= limit).all(axis=1) & first).any())
             assert kernel.is_near(index, state) == expected
-            found += expected
-    assert found > 50
+            count += expected
+    assert count > 50

@@ -27,10 +27,10 @@ from tests.flows import weakly_repelling
 def test_motion_locked_to_a_period_longer_than_any_run_is_not_periodic(law, a, kind, points, period):
     search = Search(Model(Chain(3), law_of(law, a)), growth_window=0.0)
     index = search.reach(search.model.begin(PAPER_STATES["plus"]))
-    found = search.attractors[index].motion
-    assert (found.kind.name, found.section_period) == (kind, points)
-    assert found.period == pytest.approx(period, rel=1e-5)
-    assert (np.diff(found.exponent) <= 0.0).all()
+    motion = search.attractors[index].motion
+    assert (motion.kind.name, motion.section_period) == (kind, points)
+    assert motion.period == pytest.approx(period, rel=1e-5)
+    assert (np.diff(motion.exponent) <= 0.0).all()
 
 
 @pytest.mark.parametrize(
@@ -45,8 +45,8 @@ def test_motion_locked_to_a_period_longer_than_any_run_is_not_periodic(law, a, k
 def test_motion_that_still_drifts_is_not_an_attractor(law, a, coupling, blocks, mean):
     """Blocks on weak springs reach antiphase in a time of about 1/coupling, or are undetermined."""
     weak = Model(Chain(blocks, coupling=coupling, pulling=1.0), law_of(law, a))
-    found, labels = find_attractors(weak, SearchSettings(samples=6))
-    listed = [item.motion.mean_distance for item in found]
+    attractors, labels = find_attractors(weak, SearchSettings(samples=6))
+    listed = [item.motion.mean_distance for item in attractors]
     assert listed == ([] if mean is None else [pytest.approx(mean, abs=3e-6)])
     assert set(labels.tolist()) <= {-1, 0}
 
@@ -55,8 +55,8 @@ def test_a_state_on_an_unstable_orbit_reaches_the_chaos_around_it():
     orbit = weakly_repelling()
     position = tuple(orbit.reference.position + orbit.model.sliding_offset)
     start = InitialState("near", position, tuple(orbit.reference.velocity))
-    found, labels = find_attractors(orbit.model, SearchSettings(samples=0), starts=[start])
-    assert [item.motion.kind.name for item in found] == ["CHAOTIC", "CHAOTIC"]
+    attractors, labels = find_attractors(orbit.model, SearchSettings(samples=0), starts=[start])
+    assert [item.motion.kind.name for item in attractors] == ["CHAOTIC", "CHAOTIC"]
     assert labels.tolist() in ([0], [1])
 
 

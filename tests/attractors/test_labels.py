@@ -20,7 +20,7 @@ END = 1000.0
 
 
 @pytest.fixture(scope="module")
-def found():
+def reached():
     """Return synchrony, sampled states, and the labels and times with synchrony as the only attractor."""
     search = Search(MODEL, SearchSettings(transient=1000.0, window=500.0))
     search.reach(MODEL.begin(PAPER_STATES["minus"]))
@@ -32,8 +32,8 @@ def found():
 @pytest.mark.parametrize(
     ("patience", "least", "most"), [(0.0, 0.0, 0.0), (120.0, 0.1, 0.6), (200.0, 0.3, 0.95), (1e9, 0.5, 1.0)]
 )
-def test_a_state_that_reaches_an_orbit_within_the_patience_is_assigned_to_it(found, patience, least, most):
-    orbit, states, (alone, reached_at) = found
+def test_a_state_that_reaches_an_orbit_within_the_patience_is_assigned_to_it(reached, patience, least, most):
+    orbit, states, (alone, reached_at) = reached
     wide = replace(orbit, radius=1.0, close_returns=2, patience=patience)
     near, near_at = label_states(MODEL, [wide], *states, time_limit=END)
     # Without patience the wide attractor is always reached first.
@@ -50,13 +50,13 @@ def test_a_state_that_reaches_an_orbit_within_the_patience_is_assigned_to_it(fou
 def test_patience_is_reduced_if_a_sample_arrives_early(script_answers, came, expected):
     chaos = stand_in(ahead=0.05, kind=MotionKind.CHAOTIC, spacing=1.0, patience=10_000.0)
     labels, times = np.array([1] * len(came) + [0, -1]), np.array([*came, 5000.0, 20_000.0])
-    asked = script_answers(fractions, "label_arrays", [(labels, times, None), (np.zeros(50, dtype=int), None, None)])
-    known = [chaos, stand_in(partner=1, ahead=0.0)]
-    search = Search(MODEL, SearchSettings(samples=20, fraction_width=0.134), attractors=known)
-    with parallel_map(1) as each:
-        (search,), _ = fractions.fraction_labels([search], "moving", each)
+    calls = script_answers(fractions, "label_arrays", [(labels, times, None), (np.zeros(50, dtype=int), None, None)])
+    attractors = [chaos, stand_in(partner=1, ahead=0.0)]
+    search = Search(MODEL, SearchSettings(samples=20, fraction_width=0.134), attractors=attractors)
+    with parallel_map(1) as pool:
+        (search,), _ = fractions.fraction_labels([search], "moving", pool)
     assert [item.patience for item in search.attractors] == [expected, 0.0]
-    assert [(len(position), limit) for _, _, position, _, _, limit in asked] == [(20, 20_000.0), (50, 200_000.0)]
+    assert [(len(position), limit) for _, _, position, _, _, limit in calls] == [(20, 20_000.0), (50, 200_000.0)]
 
 
 def sticking(position):
@@ -66,12 +66,12 @@ def sticking(position):
 
 def test_states_of_the_basin_fractions_obey_the_start_convention(script_answers):
     """With a tested start blocks stick if the spring force is too small; the states at each a are independent."""
-    asked = script_answers(fractions, "label_arrays", [(np.zeros(50, dtype=int), None, None)] * 3)
+    calls = script_answers(fractions, "label_arrays", [(np.zeros(50, dtype=int), None, None)] * 3)
     settings = SearchSettings(samples=0, fraction_width=0.134)
     for a, start in ((0.08, "tested"), (0.08, "moving"), (0.09, "tested")):
-        with parallel_map(1) as each:
-            fractions.fraction_labels([Search(MODEL.at(a), settings, attractors=[stand_in()])], start, each)
-    positions, velocities, sticks = zip(*(arguments[2:5] for arguments in asked), strict=True)
+        with parallel_map(1) as pool:
+            fractions.fraction_labels([Search(MODEL.at(a), settings, attractors=[stand_in()])], start, pool)
+    positions, velocities, sticks = zip(*(arguments[2:5] for arguments in calls), strict=True)
     expected = sticking(positions[0] + MODEL.sliding_offset)
     assert 0.2 < expected.mean() < 0.9
     assert sticks[0].tolist() == (velocities[0] == 0.0).tolist() == expected.tolist()
@@ -81,9 +81,9 @@ def test_states_of_the_basin_fractions_obey_the_start_convention(script_answers)
     assert abs(np.corrcoef(positions[0].ravel(), positions[2].ravel())[0, 1]) < 0.3
 
 
-def test_states_obey_the_start_convention(found):
+def test_states_obey_the_start_convention(reached):
     """With a tested start such blocks begin at rest."""
-    orbit, (position, velocity), (_, moving) = found
+    orbit, (position, velocity), (_, moving) = reached
     labels, times = label_states(MODEL, [orbit], position, velocity, start="tested", time_limit=END)
     expected = label_states(MODEL, [orbit], position, np.where(sticking(position), 0.0, velocity), time_limit=END)
     assert labels.tolist() == expected[0].tolist()
@@ -98,17 +98,17 @@ def test_blocks_may_slip_backward_under_a_symmetric_contact():
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3, 7, 101])
-def test_labels_do_not_depend_on_the_number_of_threads(found, threads):
-    orbit, states, (labels, times) = found
+def test_labels_do_not_depend_on_the_number_of_threads(reached, threads):
+    orbit, states, (labels, times) = reached
     shared = label_states(MODEL, [orbit], *states, time_limit=END, threads=threads)
     assert shared[0].tolist() == labels.tolist()
     assert shared[1].tolist() == times.tolist()
     assert len({*labels.tolist()}) == 2
 
 
-def test_an_attractor_is_reached_at_the_stops_of_its_own_block(found):
+def test_an_attractor_is_reached_at_the_stops_of_its_own_block(reached):
     """Returns of the middle block never agree with states at stops of the first one."""
-    orbit, states, (labels, _) = found
+    orbit, states, (labels, _) = reached
     inner = returns_at(MODEL, orbit.motion.state(), 2)
     few = [part[:20] for part in states]
     other = replace(orbit, motion=replace(orbit.motion, returns=inner, block=2))
@@ -127,7 +127,7 @@ def returns_at(model, start, block):
 
 
 @pytest.mark.filterwarnings("ignore:the matrix subclass")
-def test_states_may_be_a_matrix_of_numpy(found):
-    orbit, states, (labels, _) = found
+def test_states_may_be_a_matrix_of_numpy(reached):
+    orbit, states, (labels, _) = reached
     few = [np.matrix(values[:20]) for values in states]
     assert label_states(MODEL, [orbit], *few, time_limit=END)[0].tolist() == labels[:20].tolist()

@@ -88,7 +88,7 @@ def find(monkeypatch, script_answers):
         LATE
     """
 
-    def found(attractors, *rounds):
+    def lifetimes_of(attractors, *rounds):
         runs = []
 
         def advance(model, starts, time):
@@ -102,12 +102,17 @@ def find(monkeypatch, script_answers):
             ends = np.zeros(int(np.isnan(when).sum()), int)
             ends[:nowhere] = -1
             later += [(ends, None), (np.array(early, int), None)]
-        followed, asked = script_answers(lifetime, "label_arrays", first), script_answers(lifetime, "label", later)
+        followed, calls_of_label = (
+            script_answers(lifetime, "label_arrays", first),
+            script_answers(lifetime, "label", later),
+        )
         lives = lifetimes(MODEL, attractors, SETTINGS)
-        calls = [(len(position), time_limit, len(known)) for _, known, position, *_, time_limit in followed]
-        return lives, runs + calls + [(len(starts), time_limit, len(known)) for _, known, starts, time_limit in asked]
+        calls = [(len(position), time_limit, len(targets)) for _, targets, position, *_, time_limit in followed]
+        return lives, runs + calls + [
+            (len(starts), time_limit, len(targets)) for _, targets, starts, time_limit in calls_of_label
+        ]
 
-    return found
+    return lifetimes_of
 
 
 def chaos(partner=0):
@@ -125,31 +130,31 @@ def all_stay(times):
 def test_trajectories_that_have_left_are_counted_with_their_times(find):
     """Six are captured by the other attractor, two of them too early to count; seven leave for an unknown set."""
     when = [LATE + 20.0] * 4 + [LATE, 0.5 * LATE] + [NEVER] * 26
-    found, asked = find(
+    lives, calls = find(
         [chaos(), stand_in(partner=1, **CAUGHT)], (when, 7, [-1, 0, 0, -1, 0, 0, 0]), *map(all_stay, EXTENSIONS)
     )
     # Nine escapes do not decide: more trajectories are followed, until six times as many are enough.
-    assert found == [Lifetime(9, (19 + 6 * 32) * TIME + 4 * 20.0 + 5 * 0.5 * TIME), None]
-    assert [call for call in asked if 0 < call[0] < 32] == [(7, LATE), (26, 50.0, 2), (7, 50.0, 2)]
-    assert [call for call in asked if call[1:] == (LATE + TIME, 1)] == [(32 * n, LATE + TIME, 1) for n in (1, 1, 2, 3)]
+    assert lives == [Lifetime(9, (19 + 6 * 32) * TIME + 4 * 20.0 + 5 * 0.5 * TIME), None]
+    assert [call for call in calls if 0 < call[0] < 32] == [(7, LATE), (26, 50.0, 2), (7, 50.0, 2)]
+    assert [call for call in calls if call[1:] == (LATE + TIME, 1)] == [(32 * n, LATE + TIME, 1) for n in (1, 1, 2, 3)]
 
 
 def test_all_captures_count_if_chaos_is_short(find):
     when = [10.0] * 28 + [NEVER] * 4
-    found, _ = find([chaos(), stand_in(partner=1, **CAUGHT)], (when, 2, [0, -1]))
-    assert found == [Lifetime(30, 28 * 10.0 + 2 * (LATE + TIME) + 2 * 0.5 * LATE), None]
+    lives, _ = find([chaos(), stand_in(partner=1, **CAUGHT)], (when, 2, [0, -1]))
+    assert lives == [Lifetime(30, 28 * 10.0 + 2 * (LATE + TIME) + 2 * 0.5 * LATE), None]
     # All captures also count if fewer than eight trajectories are left, lost ones excluded.
-    found, _ = find([chaos(), stand_in(partner=1, **CAUGHT)], ([10.0] * 21 + [NEVER] * 11, 9, [-1] * 4 + [0] * 5))
-    assert found == [Lifetime(30, 21 * 10.0 + 2 * (LATE + TIME) + 9 * 0.5 * LATE), None]
+    lives, _ = find([chaos(), stand_in(partner=1, **CAUGHT)], ([10.0] * 21 + [NEVER] * 11, 9, [-1] * 4 + [0] * 5))
+    assert lives == [Lifetime(30, 21 * 10.0 + 2 * (LATE + TIME) + 9 * 0.5 * LATE), None]
 
 
 def test_more_trajectories_are_followed_if_some_leave(find):
     first = [LATE + 20.0] + [NEVER] * 31
-    found, asked = find([chaos(), stand_in(partner=1, **CAUGHT)], (first, 0, []), *map(all_stay, EXTENSIONS))
-    assert found == [Lifetime(1, (31 + 3 * 32) * TIME + 20.0), None]
-    assert found[0].is_decided(SETTINGS.lifetime)
-    assert found[0].is_longer_than(SETTINGS.lifetime)
-    assert asked[:3] == [(32 * n, LATE + TIME, 1) for n in (1, 1, 2)]
+    lives, calls = find([chaos(), stand_in(partner=1, **CAUGHT)], (first, 0, []), *map(all_stay, EXTENSIONS))
+    assert lives == [Lifetime(1, (31 + 3 * 32) * TIME + 20.0), None]
+    assert lives[0].is_decided(SETTINGS.lifetime)
+    assert lives[0].is_longer_than(SETTINGS.lifetime)
+    assert calls[:3] == [(32 * n, LATE + TIME, 1) for n in (1, 1, 2)]
 
 
 @pytest.mark.parametrize(
@@ -169,9 +174,9 @@ def test_a_lifetime_is_decided_by_an_interval_of_high_confidence(ends, time, dec
 
 
 def test_a_change_to_the_mirror_image_does_not_end_chaos(find):
-    found, asked = find([chaos(1), chaos(0)], ([NEVER] * 32, 0, []))
-    assert found == [Lifetime(0, 32 * TIME)] * 2
-    assert asked == [(32, TIME, 0), (32, 50.0, 2), (0, 50.0, 2)]
+    lives, calls = find([chaos(1), chaos(0)], ([NEVER] * 32, 0, []))
+    assert lives == [Lifetime(0, 32 * TIME)] * 2
+    assert calls == [(32, TIME, 0), (32, 50.0, 2), (0, 50.0, 2)]
 
 
 def test_motion_that_is_not_chaotic_has_no_lifetime(find):
@@ -194,8 +199,8 @@ def test_motion_that_is_not_chaotic_has_no_lifetime(find):
 )
 def test_counting_starts_after_the_capture_time_of_a_slow_attractor(find, rate, radius, way):
     slow = stand_in(partner=1, **{**CAUGHT, "exponent": np.array([0.0, -rate, -1.0]), "radius": radius})
-    _, asked = find([chaos(), slow], ([NEVER] * 32, 0, []))
-    assert asked[0] == (32, pytest.approx(2.0 * (way + 20.0) + TIME), 1)
+    _, calls = find([chaos(), slow], ([NEVER] * 32, 0, []))
+    assert calls[0] == (32, pytest.approx(2.0 * (way + 20.0) + TIME), 1)
 
 
 @pytest.mark.slow
@@ -219,11 +224,11 @@ def test_perturbations_depend_on_the_seed_and_scale_with_v(script_answers):
     """At twice the v of the paper the perturbations are up to twice a tenth of the resolution."""
     fast, away = Model(Chain(3), MODEL.law, 0.2), []
     for seed in (3, 3, 4):
-        asked = script_answers(lifetime, "label_arrays", [(np.full(32, -1), np.zeros(32), np.zeros((32, 6)))])
+        calls = script_answers(lifetime, "label_arrays", [(np.full(32, -1), np.zeros(32), np.zeros((32, 6)))])
         script_answers(lifetime, "label", [(np.zeros(32, int), None), (np.zeros(0, int), None)])
         wide = stand_in(kind=MotionKind.CHAOTIC, radius=0.021)
         lifetimes(fast, [wide], replace(SETTINGS, seed=seed, lifetime=100.0))
-        states = np.concatenate(asked[0][2:4], axis=1)
+        states = np.concatenate(calls[0][2:4], axis=1)
         away.append([np.abs(state - chaos().motion.returns).max(axis=1).min() for state in states])
     assert 1.8e-4 < max(away[0]) <= 2e-4
     assert away[0] == away[1] != away[2]
@@ -233,11 +238,11 @@ def test_trajectories_that_start_on_thin_chaos_are_recognised_there(script_answe
     """Perturbations are far smaller than the radius; states within a few spacings of the returns are on the set."""
     thin = stand_in(kind=MotionKind.CHAOTIC, radius=1e-6, spacing=0.01)
     followed = script_answers(lifetime, "label_arrays", [(np.full(32, -1), np.zeros(32), np.zeros((32, 6)))])
-    asked = script_answers(lifetime, "label", [(np.zeros(32, int), None), (np.zeros(0, int), None)])
-    (found,) = lifetimes(MODEL, [thin], SETTINGS)
-    assert found.ends == 0
+    calls = script_answers(lifetime, "label", [(np.zeros(32, int), None), (np.zeros(0, int), None)])
+    (life,) = lifetimes(MODEL, [thin], SETTINGS)
+    assert life.ends == 0
     returns = thin.motion.returns
     states = np.concatenate(followed[0][2:4], axis=1)
     away = [min(np.abs(state - row).max() for row in returns) for state in states]
     assert 0.9e-8 < max(away) <= 1e-8
-    assert [one.radius for one in asked[0][1]] == [pytest.approx(SPACINGS * 0.01)]
+    assert [attractor.radius for attractor in calls[0][1]] == [pytest.approx(SPACINGS * 0.01)]

@@ -47,11 +47,11 @@ def boundary(model, attractors):
 @pytest.mark.parametrize("part", OTHERS)
 def test_attractors_of_another_model_are_refused(part, call):
     models = MODEL, OTHERS[part]
-    own, other = (format_value(attrgetter(part)(model)) for model in models)
+    first, second = (format_value(attrgetter(part)(model)) for model in models)
     mixed = [stand_in(model=model) for model in models]
-    with refused(f"attractors[1].model.{part}: {other}, expected {own}, as in the model"):
+    with refused(f"attractors[1].model.{part}: {second}, expected {first}, as in the model"):
         call(MODEL, mixed)
-    with refused(f"attractors[0].model.{part}: {own}, expected {other}, as in the model"):
+    with refused(f"attractors[0].model.{part}: {first}, expected {second}, as in the model"):
         call(OTHERS[part], mixed)
 
 
@@ -61,16 +61,16 @@ def test_a_chain_in_another_form_is_the_same():
     for model in (MODEL, Model(same, law_of("linearized", 0.08)), MODEL.at(0.1).at(0.08)):
         assert label(model, attractors)[0].tolist() == [0, 1]
     copied = pickle.loads(pickle.dumps(attractors))
-    assert [one.model for one in copied] == [MODEL] * 2
+    assert [attractor.model for attractor in copied] == [MODEL] * 2
     assert attractors_of(MODEL, copied) == copied
 
 
 def test_a_pickle_without_a_model_is_refused():
     attractor = stand_in()
     del vars(attractor)["model"]
-    kept = pickle.dumps(attractor)
+    pickled = pickle.dumps(attractor)
     with refused(match="^attractor: got a pickle without its model, expected"):
-        pickle.loads(kept)
+        pickle.loads(pickled)
 
 
 @pytest.mark.parametrize(

@@ -26,31 +26,31 @@ def search_map(model, settings=SEARCH):
 def test_the_periodic_orbit_of_the_logistic_map_is_its_only_attractor(maps, r, period):
     """This holds in the window of period 3 too, in which chaos is transient."""
     search, _, labels = search_map(LOGISTIC.at(r))
-    (found,) = search.attractors
-    assert (found.motion.kind, found.motion.section_period) == (MotionKind.PERIODIC, period)
+    (attractor,) = search.attractors
+    assert (attractor.motion.kind, attractor.motion.section_period) == (MotionKind.PERIODIC, period)
     assert (labels == 0).all()
     orbit = LOGISTIC.at(r).orbit(0.3, 20_000)[-period:]
-    assert np.sort(found.motion.returns[-period:, 0]) == pytest.approx(np.sort(orbit), abs=1e-6)
+    assert np.sort(attractor.motion.returns[-period:, 0]) == pytest.approx(np.sort(orbit), abs=1e-6)
     # The multiplier of the orbit.
     multiplier = np.abs(LOGISTIC.slope(orbit, r)).prod()
-    assert found.motion.exponent[1] == pytest.approx(np.log(multiplier) / period, abs=1e-6)
+    assert attractor.motion.exponent[1] == pytest.approx(np.log(multiplier) / period, abs=1e-6)
 
 
 def test_chaos_of_the_logistic_map_is_a_single_attractor_that_lasts(maps):
     """At r = 4 the exponent is ln 2, and no trajectory leaves [0, 1]."""
     search, _, labels = search_map(LOGISTIC.at(3.999999))
-    (found,) = search.attractors
-    assert found.motion.kind == MotionKind.CHAOTIC
+    (attractor,) = search.attractors
+    assert attractor.motion.kind == MotionKind.CHAOTIC
     assert (labels == 0).all()
-    assert found.motion.exponent[0] == pytest.approx(np.log(2.0), abs=0.02)
+    assert attractor.motion.exponent[0] == pytest.approx(np.log(2.0), abs=0.02)
     (life,) = lifetimes(search.model, search.attractors, SEARCH)
     assert life.is_longer_than(SEARCH.lifetime)
 
 
 def test_motion_that_never_returns_is_quasiperiodic(maps):
     search, _, labels = search_map(CIRCLE)
-    (found,) = search.attractors
-    assert found.motion.kind == MotionKind.QUASIPERIODIC
+    (attractor,) = search.attractors
+    assert attractor.motion.kind == MotionKind.QUASIPERIODIC
     assert (labels == 0).all()
 
 
@@ -76,8 +76,8 @@ def test_the_attractors_do_not_depend_on_the_order_of_the_states(maps):
     starts = first.starts((), "moving")
     second = Search(model, settings)
     wells = []
-    for search, given in ((first, starts), (second, starts[::-1])):
-        labels = search.labels(given)
+    for search, states in ((first, starts), (second, starts[::-1])):
+        labels = search.labels(states)
         wells.append(np.array([search.attractors[k].motion.state().position[0] for k in labels]))
     assert wells[0] == pytest.approx(wells[1][::-1], abs=1e-9)
 

@@ -58,15 +58,15 @@ def test_the_mean_distance_tends_to_that_of_the_modes(branch: str, limit: float,
     ends, fast = MODES[branch]
     closed_form = mean_modulus(2.0 * ends, np.sqrt(2.0) * ends)
     assert closed_form == pytest.approx(limit, abs=5e-6)
-    found, friction = [], np.array([0.0005, 0.001, 0.002])
+    distances, friction = [], np.array([0.0005, 0.001, 0.002])
     for a in friction:
         model = Model(Chain(3), law_of(law, a), V)
         settings = Settings(
             transient=10.0 / a, window=20.0 / a, sampling=1.0 / a, trajectory=0.0, events="none", lyapunov_exponents=0
         )
-        found.append(run(model, modes(ends, fast), settings).mean_distance)
+        distances.append(run(model, modes(ends, fast), settings).mean_distance)
     # The less the modes grow between two sticks, the shorter the sticks: ⟨J⟩ approaches that of the modes.
-    first, second, third = found
+    first, second, third = distances
     extrapolated = 2.0 * first - second
     assert closed_form < first < second < third < 1.05 * closed_form
     assert extrapolated == pytest.approx(closed_form, rel=0.01 if branch == "branch 1" else 1e-4)
@@ -86,7 +86,7 @@ def test_energy_has_a_maximum_at_three_vertices() -> None:
     corners = vertices()
     maxima = []
     for faces, vertex in corners.items():
-        edges = [other - vertex for others, other in corners.items() if len(set(faces) & set(others)) == 2]
+        edges = [other - vertex for adjacent, other in corners.items() if len(set(faces) & set(adjacent)) == 2]
         assert len(edges) == 3
         slopes = [(WEIGHT * vertex) @ edge for edge in edges]
         if max(slopes) < -1e-9:
@@ -111,10 +111,10 @@ def test_energy_has_a_maximum_at_three_vertices() -> None:
 )
 def test_amplitudes_follow_the_averaged_equations(start: tuple[float, ...], end: np.ndarray) -> None:
     times = np.array([500.0, 1000.0, 2000.0, 4000.0, 8000.0])
-    expected, found = (of(np.array(start), 0.001, times) for of in (averaged_amplitudes, simulated_amplitudes))
+    expected, simulated = (of(np.array(start), 0.001, times) for of in (averaged_amplitudes, simulated_amplitudes))
     np.testing.assert_allclose(expected[-1], end, atol=2e-3)
-    np.testing.assert_allclose(found[-1], end, atol=0.02)
-    assert np.abs(found - expected).max() < 0.1
+    np.testing.assert_allclose(simulated[-1], end, atol=0.02)
+    assert np.abs(simulated - expected).max() < 0.1
 
 
 def test_most_random_states_follow_the_averaged_equations() -> None:

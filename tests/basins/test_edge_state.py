@@ -64,22 +64,22 @@ def between_mirror_images():
 
 
 def test_the_edge_state_between_mirror_images_is_the_synchronized_orbit(between_mirror_images):
-    found, _ = between_mirror_images
-    assert (found.kind, found.symmetry) == (MotionKind.SYNCHRONIZED, Symmetry.SYNCHRONIZED)
-    check_same(found.orbit, synchronized_orbit(found.model))
-    assert found.mean_distance == pytest.approx(0.0, abs=1e-12)
+    edge, _ = between_mirror_images
+    assert (edge.kind, edge.symmetry) == (MotionKind.SYNCHRONIZED, Symmetry.SYNCHRONIZED)
+    check_same(edge.orbit, synchronized_orbit(edge.model))
+    assert edge.mean_distance == pytest.approx(0.0, abs=1e-12)
 
 
 def test_attractors_are_searched_for_if_none_are_given(between_mirror_images):
-    found, attractors = between_mirror_images
+    edge, attractors = between_mirror_images
     states = [item.motion.state() for item in attractors if item.symmetry == Symmetry.ASYMMETRIC]
-    check_same(edge_state(found.model, *states, settings=FEW, time_limit=20_000).orbit, found.orbit)
+    check_same(edge_state(edge.model, *states, settings=FEW, time_limit=20_000).orbit, edge.orbit)
 
 
 def test_multipliers_agree_with_another_integrator(between_mirror_images):
     """The others are 0, for perturbations that vanish at a stop, and 1, for that along the flow."""
-    found, _ = between_mirror_images
-    orbit, step = found.orbit, 1e-5
+    edge, _ = between_mirror_images
+    orbit, step = edge.orbit, 1e-5
     start = orbit.reference
     columns = []
     for k in range(6):
@@ -88,39 +88,39 @@ def test_multipliers_agree_with_another_integrator(between_mirror_images):
             vector = start.vector()
             vector[k] += side
             moved = replace(start, position=vector[:3], velocity=vector[3:])
-            ends.append(model_events(found.model, moved, orbit.period)[1])
+            ends.append(model_events(edge.model, moved, orbit.period)[1])
         columns.append((ends[0] - ends[1]) / (2.0 * step))
     expected = np.sort(np.abs(np.linalg.eigvals(np.array(columns).T)))[::-1]
     assert not start.stuck.any()
     assert expected[1] == pytest.approx(1.0, abs=1e-6)
-    own = np.abs(found.multiplier)
-    assert own[:2] == pytest.approx(np.delete(expected, 1)[:2], abs=1e-6)
-    assert (own > 1.0).sum() == 1
+    moduli = np.abs(edge.multiplier)
+    assert moduli[:2] == pytest.approx(np.delete(expected, 1)[:2], abs=1e-6)
+    assert (moduli > 1.0).sum() == 1
 
 
 def test_exponents_along_the_boundary_are_those_of_the_orbit(between_mirror_images):
-    found, _ = between_mirror_images
-    rates = np.log(np.abs(found.multiplier[:2])) / found.orbit.period
-    assert found.exponent == pytest.approx([rates[0], 0.0, rates[1]], abs=0.01)
-    assert found.exponent[:2] == pytest.approx([rates[0], 0.0], abs=4.0 * found.exponent_error[:2].max())
-    assert found.lifetime == pytest.approx(1.0 / rates[0])
+    edge, _ = between_mirror_images
+    rates = np.log(np.abs(edge.multiplier[:2])) / edge.orbit.period
+    assert edge.exponent == pytest.approx([rates[0], 0.0, rates[1]], abs=0.01)
+    assert edge.exponent[:2] == pytest.approx([rates[0], 0.0], abs=4.0 * edge.exponent_error[:2].max())
+    assert edge.lifetime == pytest.approx(1.0 / rates[0])
 
 
 def test_each_side_leads_to_one_of_the_two(between_mirror_images):
-    found, attractors = between_mirror_images
-    assert sorted(map(len, found.sides)) == [1, 1]
-    (first,), (second,) = found.sides
+    edge, attractors = between_mirror_images
+    assert sorted(map(len, edge.sides)) == [1, 1]
+    (first,), (second,) = edge.sides
     assert attractors[first].partner == second
-    assert found.reached_count.sum(axis=1).tolist() == [100, 100]
-    assert not found.has_crossing
+    assert edge.reached_count.sum(axis=1).tolist() == [100, 100]
+    assert not edge.has_crossing
 
 
 def test_states_exactly_between_mirror_images_reach_neither(between_mirror_images):
     """The mean of a state and its mirror image stays symmetric and reaches no attractor, so it is ignored."""
-    found, attractors = between_mirror_images
+    edge, attractors = between_mirror_images
     state = next(item for item in attractors if item.symmetry == Symmetry.ASYMMETRIC).motion.state()
-    other = edge_state(found.model, state, state.mirrored(), attractors, FEW, time_limit=5000)
-    check_same(other.orbit, found.orbit)
+    other = edge_state(edge.model, state, state.mirrored(), attractors, FEW, time_limit=5000)
+    check_same(other.orbit, edge.orbit)
 
 
 @pytest.mark.parametrize(
@@ -142,21 +142,21 @@ def test_the_saddle_is_the_orbit_with_which_the_attractor_is_born(a, start, stop
     saddle = KnownOrbits(branch[-2].orbit).at(a)
     assert saddle.stop_counts == saddle_stops
     other = next(k for k, item in enumerate(attractors) if k != index and item.partner == k)
-    found = edge_state(model, *(attractors[k].motion.state() for k in (index, other)), attractors, FEW)
-    check_same(found.orbit, saddle)
-    assert (found.kind, found.symmetry) == (MotionKind.PERIODIC, Symmetry.ASYMMETRIC)
-    assert found.has_crossing == crosses
+    edge = edge_state(model, *(attractors[k].motion.state() for k in (index, other)), attractors, FEW)
+    check_same(edge.orbit, saddle)
+    assert (edge.kind, edge.symmetry) == (MotionKind.PERIODIC, Symmetry.ASYMMETRIC)
+    assert edge.has_crossing == crosses
 
 
 def test_a_third_basin_may_lie_between_two():
     """The segment between the torus and the antiphase motion passes through the basin of synchrony."""
     model, attractors = coexisting("linearized", 0.05, 60)
     third, first, second = sorted(range(3), key=lambda k: attractors[k].motion.mean_distance)
-    found = edge_state(model, *(attractors[k].motion.state() for k in (first, second)), attractors, FEW)
-    assert found.sides == ({first}, {third})
-    assert (found.kind, found.orbit) == (MotionKind.QUASIPERIODIC, None)
-    assert found.exponent[0] > 10.0 * np.abs(found.exponent[1:]).max()
-    assert found.lifetime == pytest.approx(1.0 / found.exponent[0])
+    edge = edge_state(model, *(attractors[k].motion.state() for k in (first, second)), attractors, FEW)
+    assert edge.sides == ({first}, {third})
+    assert (edge.kind, edge.orbit) == (MotionKind.QUASIPERIODIC, None)
+    assert edge.exponent[0] > 10.0 * np.abs(edge.exponent[1:]).max()
+    assert edge.lifetime == pytest.approx(1.0 / edge.exponent[0])
 
 
 @pytest.fixture(scope="module")
@@ -171,23 +171,23 @@ def test_a_torus_on_a_fractal_boundary(near_loss):
     """Of 10 000 states displaced to either side, 2.0 and 2.6 % reach the attractor of the other side."""
     model, attractors, order = near_loss
     first, second = order[:2]
-    found = edge_state(model, *(attractors[k].motion.state() for k in (first, second)), attractors)
-    assert (found.kind, found.symmetry, found.has_crossing) == (MotionKind.QUASIPERIODIC, Symmetry.SYMMETRIC, True)
-    assert found.exponent[0] == pytest.approx(0.0128, abs=4.0 * found.exponent_error[0])
-    beyond = found.reached_count[[0, 1], [second, first]]
+    edge = edge_state(model, *(attractors[k].motion.state() for k in (first, second)), attractors)
+    assert (edge.kind, edge.symmetry, edge.has_crossing) == (MotionKind.QUASIPERIODIC, Symmetry.SYMMETRIC, True)
+    assert edge.exponent[0] == pytest.approx(0.0128, abs=4.0 * edge.exponent_error[0])
+    beyond = edge.reached_count[[0, 1], [second, first]]
     assert beyond == pytest.approx(500 * np.array([0.0202, 0.0264]), abs=3.0 * np.sqrt(500 * 0.0264))
 
 
 def test_a_crossing_counts_if_the_boundary_there_leads_back(near_loss):
     model, attractors, order = near_loss
     states = [attractors[k].motion.state() for k in order]
-    found = edge_state(model, *states[:2], attractors, FEW)
+    edge = edge_state(model, *states[:2], attractors, FEW)
 
     def leads_back(first):
         """Return whether the boundary between one state and the next leads to the edge state of the first two."""
         pair = states[first], states[first + 1]
         track = EdgeTrack(model, attractors, np.arange(3) == order[first], *pair, 20_000.0, 3)
-        return _leads_back(track, pair, 6000.0, found.mean_distance)
+        return _leads_back(track, pair, 6000.0, edge.mean_distance)
 
     # The other two are separated by the orbit with (8, 0, 8) stops, with ⟨J⟩ = 0.166.
     assert [leads_back(first) for first in (0, 1)] == [True, False]
@@ -203,30 +203,30 @@ def chaotic():
 
 
 def test_a_chaotic_saddle(chaotic):
-    found, _ = chaotic
-    assert (found.kind, found.symmetry, found.orbit) == (MotionKind.CHAOTIC, Symmetry.SYMMETRIC, None)
-    across, within, flow = found.exponent
+    edge, _ = chaotic
+    assert (edge.kind, edge.symmetry, edge.orbit) == (MotionKind.CHAOTIC, Symmetry.SYMMETRIC, None)
+    across, within, flow = edge.exponent
     assert across > 10.0 * within
-    assert within > 4.0 * found.exponent_error[1]
+    assert within > 4.0 * edge.exponent_error[1]
     assert flow == pytest.approx(0.0, abs=1e-3)
     # Trajectories leave the boundary much faster than they separate within it: the boundary is smooth.
-    assert not found.has_crossing
+    assert not edge.has_crossing
 
 
 def test_the_lifetime_is_that_of_displaced_states(chaotic):
     """A fraction exp(−τ/lifetime) of states displaced uniformly in all directions, within 1e-4, remains after τ."""
-    found, attractors = chaotic
+    edge, attractors = chaotic
     generator = np.random.default_rng(3)
-    returns = found.returns[generator.integers(len(found.returns), size=3000)]
+    returns = edge.returns[generator.integers(len(edge.returns), size=3000)]
     returns[:, :3] += generator.uniform(-1e-4, 1e-4, (3000, 3))
-    position, velocity = returns[:, :3] + found.model.sliding_offset, np.abs(returns[:, 3:])
-    labels, times = label_states(found.model, attractors, position, velocity, time_limit=20_000)
+    position, velocity = returns[:, :3] + edge.model.sliding_offset, np.abs(returns[:, 3:])
+    labels, times = label_states(edge.model, attractors, position, velocity, time_limit=20_000)
     for side in (0, 1):
         left = np.sort(times[labels == side])
         tail = left[3 * len(left) // 4 :] - left[3 * len(left) // 4]
-        error = np.hypot(tail.mean() / np.sqrt(len(tail)), found.lifetime_error)
-        assert found.lifetime == pytest.approx(tail.mean(), abs=3.0 * error)
-    assert found.lifetime == pytest.approx(1.0 / found.exponent[0], rel=0.15)
+        error = np.hypot(tail.mean() / np.sqrt(len(tail)), edge.lifetime_error)
+        assert edge.lifetime == pytest.approx(tail.mean(), abs=3.0 * error)
+    assert edge.lifetime == pytest.approx(1.0 / edge.exponent[0], rel=0.15)
 
 
 def test_smaller_radii_are_used_if_labels_contradict_each_other():

@@ -41,10 +41,10 @@ def test_a_small_fraction_needs_fewer_states_than_a_large_one():
 def test_about_as_many_states_are_labelled_as_are_needed(shares):
     """After the first states, hardly more than the required number."""
     labels = np.random.default_rng(1).choice(len(shares), size=5000, p=shares)
-    width, taken, batches = 0.03, 0, 0
-    while required_states(labels[:taken], width) is None:
-        count = further_states(labels[:taken], width)
+    width, total, batches = 0.03, 0, 0
+    while required_states(labels[:total], width) is None:
+        count = further_states(labels[:total], width)
         assert 0 < count <= LABELLED_AT_ONCE
-        taken, batches = taken + count, batches + 1
-    assert taken - required_states(labels[:taken], width) < (2 * STEP if len(shares) > 1 else LABELLED_AT_ONCE)
+        total, batches = total + count, batches + 1
+    assert total - required_states(labels[:total], width) < (2 * STEP if len(shares) > 1 else LABELLED_AT_ONCE)
     assert batches <= 7

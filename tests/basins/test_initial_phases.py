@@ -31,8 +31,8 @@ def test_amplitude_and_phases_follow_from_the_state(model):
     for block, phase in ((0, common), (-1, common + difference)):
         frequency = single_block_frequencies(model)[block]
         assert np.hypot(offset[:, block], swing[:, block] / frequency) == pytest.approx(amplitude)
-        found = np.degrees(np.arctan2(swing[:, block] / frequency, offset[:, block]))
-        assert (found - phase + 180.0) % 360.0 == pytest.approx(180.0)
+        angle = np.degrees(np.arctan2(swing[:, block] / frequency, offset[:, block]))
+        assert (angle - phase + 180.0) % 360.0 == pytest.approx(180.0)
     assert offset[:, 1:-1] == pytest.approx(0.0, abs=1e-15)
     assert swing[:, 1:-1] == pytest.approx(0.0, abs=1e-15)
 
@@ -58,8 +58,8 @@ def test_inner_blocks_oscillate_with_a_share_of_the_amplitude(model):
 def test_with_no_share_inner_phases_change_no_bit():
     arguments = (np.array([0.01, 0.05]), np.array([15.0, 180.0]), np.array([10.0, 200.0]))
     drawn = oscillating_states(UNEQUAL, *arguments, 0.0, inner_phases(0.05, (2, 2), 1))
-    for one, other in zip(drawn, oscillating_states(UNEQUAL, *arguments), strict=True):
-        assert (one == other).all()
+    for array, other in zip(drawn, oscillating_states(UNEQUAL, *arguments), strict=True):
+        assert (array == other).all()
     position, velocity, _ = drawn
     assert (position[:, 1:-1] == UNEQUAL.sliding_offset[1:-1]).all()
     assert (velocity[:, 1:-1] == UNEQUAL.v).all()
@@ -143,9 +143,9 @@ def test_no_block_slips_backward():
     common = np.arange(0.0, 360.0, 5.0)
     amplitude = np.full(len(common), 0.2)
     position, velocity, standing = oscillating_states(MODEL, amplitude, np.full(len(common), 180.0), common)
-    wanted = MODEL.v - 0.2 * np.sqrt(2.0) * np.sin(np.radians(np.stack([common, common + 180.0], axis=1)))
-    assert velocity[:, [0, 2]] == pytest.approx(np.maximum(wanted, 0.0))
-    assert standing.tolist() == (wanted < 0.0).any(axis=1).tolist()
+    oscillation = MODEL.v - 0.2 * np.sqrt(2.0) * np.sin(np.radians(np.stack([common, common + 180.0], axis=1)))
+    assert velocity[:, [0, 2]] == pytest.approx(np.maximum(oscillation, 0.0))
+    assert standing.tolist() == (oscillation < 0.0).any(axis=1).tolist()
     assert 0.5 < standing.mean() < 1.0
     # At rest or not, its position is given by its phase.
     assert position[:, 0] - MODEL.sliding_offset[0] == pytest.approx(0.2 * np.cos(np.radians(common)))
@@ -153,10 +153,10 @@ def test_no_block_slips_backward():
 
 @pytest.mark.parametrize(("drawn", "another"), [(common_phases, inner_phases), (inner_phases, common_phases)])
 def test_phases_are_uniform_and_different_at_each_a(drawn, another):
-    one, same, other, seeded = (
+    phases, same, other, seeded = (
         drawn(*x) for x in ((0.08, (4000,), 1), (0.08, (4000,), 1), (0.09, (4000,), 1), (0.08, (4000,), 2))
     )
-    assert (one == same).all()
-    assert np.histogram(one, 8, (0.0, 360.0))[0].min() > 430
+    assert (phases == same).all()
+    assert np.histogram(phases, 8, (0.0, 360.0))[0].min() > 430
     for two in (other, seeded, another(0.08, (4000,), 1)):
-        assert abs(np.corrcoef(one, two)[0, 1]) < 0.05
+        assert abs(np.corrcoef(phases, two)[0, 1]) < 0.05

@@ -17,20 +17,20 @@ def plain(label, separation, count, first=UNIT, last=UNIT, seed=5):
     angle = 2.0 * np.pi * generator.random(count)
     end = start + separation * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     both = np.logical_and.reduce([((low <= points) & (points <= high)).all(axis=1) for points in (start, end)])
-    one, other = label(start[both]), label(end[both])
-    known = (one >= 0) & (other >= 0)
-    share = (one != other)[known].mean()
-    return share, np.sqrt(share * (1.0 - share) / known.sum())
+    start_label, end_label = label(start[both]), label(end[both])
+    valid = (start_label >= 0) & (end_label >= 0)
+    share = (start_label != end_label)[valid].mean()
+    return share, np.sqrt(share * (1.0 - share) / valid.sum())
 
 
 def check_fractions(label, ranges, count, seeds, drawn, separations):
     """Compare the fractions of pairs, by their mean and its error over seeds, with those of pairs drawn uniformly."""
     pairs = [follow_pairs(label, *ranges, count, seed) for seed in range(seeds)]
-    found = [one.different_weight.sum(axis=0) / one.labelled_weight.sum(axis=0) for one in pairs]
-    mean, error = np.mean(found, axis=0), np.std(found, axis=0, ddof=1) / np.sqrt(seeds)
+    fractions = [counts.different_weight.sum(axis=0) / counts.labelled_weight.sum(axis=0) for counts in pairs]
+    mean, error = np.mean(fractions, axis=0), np.std(fractions, axis=0, ddof=1) / np.sqrt(seeds)
     for k in separations:
-        expected, own = plain(label, SEPARATIONS[k], drawn, *ranges)
-        assert abs(mean[k] - expected) < 3.5 * np.hypot(error[k], own), k
+        expected, plain_error = plain(label, SEPARATIONS[k], drawn, *ranges)
+        assert abs(mean[k] - expected) < 3.5 * np.hypot(error[k], plain_error), k
 
 
 @pytest.mark.parametrize("label", [half_plane, pytest.param(cantor(3), id="cantor", marks=pytest.mark.slow)])
@@ -48,14 +48,14 @@ def test_undetermined_points_are_excluded():
 
 def test_weights_are_those_of_pairs_of_the_plane():
     """The total weight is the fraction of short pairs in the plane among those that begin up to 0.1 outside."""
-    seen = []
+    batches = []
 
     def label(points):
-        seen.append(points)
+        batches.append(points)
         return np.zeros(len(points), dtype=int)
 
     pairs = follow_pairs(label, (-1.0, 3.0), (0.0, 2.0), 2000, 1)
-    points = np.concatenate(seen)
+    points = np.concatenate(batches)
     assert (points >= [-1.0, 0.0]).all()
     assert (points <= [3.0, 2.0]).all()
     assert not pairs.different_weight.any()
@@ -69,25 +69,25 @@ def test_weights_are_those_of_pairs_of_the_plane():
 
 def test_pairs_are_divided_into_thirds():
     """The points that are labelled after the ends of the pairs divide the pairs into thirds."""
-    seen = []
+    batches = []
 
     def label(points):
-        seen.append(points)
+        batches.append(points)
         return half_plane(points)
 
     # The edges are so far away that almost no pair extends beyond the plane.
     follow_pairs(label, (0.0, 1.0), (0.0, 1e6), BATCHES, 2)
     assert PARTS == 3
-    ends = np.concatenate(seen[:2])
+    ends = np.concatenate(batches[:2])
     thirds = ((2.0 * ends[:, None] + ends[None]) / 3.0).reshape(-1, 2)
-    there = [np.abs(thirds - point).max(axis=1).min() < 1e-9 for point in seen[2]]
+    there = [np.abs(thirds - point).max(axis=1).min() < 1e-9 for point in batches[2]]
     assert np.mean(there) > 0.6
 
 
 def test_the_same_seed_gives_the_same_pairs():
-    one, same, other = (follow_pairs(half_plane, UNIT, UNIT, 100, seed) for seed in (3, 3, 4))
-    assert (one.different_weight == same.different_weight).all()
-    assert (one.different_weight != other.different_weight).any()
+    first, same, other = (follow_pairs(half_plane, UNIT, UNIT, 100, seed) for seed in (3, 3, 4))
+    assert (first.different_weight == same.different_weight).all()
+    assert (first.different_weight != other.different_weight).any()
     # A batch has at least one pair, unless there are none.
     assert (follow_pairs(half_plane, UNIT, UNIT, 1, 3).labelled_weight.sum(axis=1) > 0.0).mean() > 0.5
     none = follow_pairs(half_plane, UNIT, UNIT, 0, 3)

@@ -10,7 +10,7 @@ from burridge_knopoff import Chain, InitialState, Model, law_of, simulate
 from burridge_knopoff.attractors.stored_returns import known_attractors, returns_of_law
 from burridge_knopoff.basins.plane import pixel_centres, plane
 from burridge_knopoff.basins.settings import BasinSettings
-from burridge_knopoff.continuation.along_a import continue_attractors
+from burridge_knopoff.continuation.attractor_continuation import continue_attractors
 from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import CONTACTS, STARTS
@@ -27,11 +27,11 @@ MODEL = Model(Chain(3), law_of("linearized", 0.08))
 @pytest.fixture(scope="module")
 def searched():
     states = list(PAPER_STATES.values())
-    found = continue_attractors([MODEL, MODEL.at(0.1)], SEARCH, MOTION, RefinementSettings(1.0), starts=states)
-    parts = [attractors.one_law(found, states, SEARCH, MOTION, "moving")]
-    rows = [found.rows(place) for place in found.grid]
+    continuation = continue_attractors([MODEL, MODEL.at(0.1)], SEARCH, MOTION, RefinementSettings(1.0), starts=states)
+    parts = [attractors.one_law(continuation, states, SEARCH, MOTION, "moving")]
+    rows = [continuation.rows(place) for place in continuation.grid]
     whole = branch_numbering.merge(parts, branch_numbering.branch_numbers(parts, [MODEL], SEARCH))
-    return whole, returns_of_law([found.models[k] for k in found.grid], rows, parts[0].attrs), rows
+    return whole, returns_of_law([continuation.models[k] for k in continuation.grid], rows, parts[0].attrs), rows
 
 
 @pytest.fixture(scope="module")
@@ -39,30 +39,30 @@ def table(searched):
     return searched[0]
 
 
-def whole(table, known, tiles, threads):
+def whole(table, attractors_at_a, tiles, threads):
     basin_settings = replace(PLANE, tiles=tiles, threads=threads)
     settings = basin_settings, SEARCH.label_limit
-    parts = [basins.tile(known, number, *settings, "moving") for number in range(tiles)]
-    near = basins.pairs(known, *settings, SEARCH.seed, "moving")
-    maps = [(known.model, parts, near)]
+    parts = [basins.tile(attractors_at_a, number, *settings, "moving") for number in range(tiles)]
+    near = basins.pairs(attractors_at_a, *settings, SEARCH.seed, "moving")
+    maps = [(attractors_at_a.model, parts, near)]
     return basins.merge(maps, table, basin_settings, SEARCH.label_limit, "moving")
 
 
 @pytest.fixture(scope="module")
-def known(searched):
+def attractors_at_a(searched):
     return known_attractors(*searched[:2], MODEL)
 
 
 @pytest.fixture(scope="module")
-def found(table, known):
-    return whole(table, known, 1, 1)
+def basin_maps(table, attractors_at_a):
+    return whole(table, attractors_at_a, 1, 1)
 
 
-def test_any_number_of_threads_and_tiles_gives_the_same_labels(table, known, found):
+def test_any_number_of_threads_and_tiles_gives_the_same_labels(table, attractors_at_a, basin_maps):
     for tiles, threads in ((3, 1), (1, 3), (5, 2)):
-        assert found.identical(whole(table, known, tiles, threads)), (tiles, threads)
-    assert found["undetermined_count"].item() == 0
-    assert len(np.unique(found["branch"])) >= 2
+        assert basin_maps.identical(whole(table, attractors_at_a, tiles, threads)), (tiles, threads)
+    assert basin_maps["undetermined_count"].item() == 0
+    assert len(np.unique(basin_maps["branch"])) >= 2
 
 
 def check_run(table, state, branch, **conventions):
@@ -74,13 +74,13 @@ def check_run(table, state, branch, **conventions):
     assert run.mean_distance == pytest.approx(mean, abs=2e-4), (state, conventions)
 
 
-def test_runs_end_on_the_branches_of_their_pixels(table, found):
+def test_runs_end_on_the_branches_of_their_pixels(table, basin_maps):
     """Every pixel of the diagonal, and the plane's axes: the first index is U_N(0)."""
     for k in range(0, 16, 3):
         for m in (k, (5 * k + 2) % 16):
-            one = found.isel(map=0, first_position=m, last_position=k)
-            position = (one["first_position"].item(), -0.993, one["last_position"].item())
-            check_run(table, InitialState("pixel", position, (0.099, 0.1012, 0.1023)), one["branch"])
+            pixel = basin_maps.isel(map=0, first_position=m, last_position=k)
+            position = (pixel["first_position"].item(), -0.993, pixel["last_position"].item())
+            check_run(table, InitialState("pixel", position, (0.099, 0.1012, 0.1023)), pixel["branch"])
 
 
 def test_runs_of_the_paper_end_on_the_branch_in_the_table(table):
@@ -93,7 +93,7 @@ def test_a_plane_of_states():
     first = pixel_centres((-1.0, 1.0), 4)
     assert first.tolist() == [-0.75, -0.25, 0.25, 0.75]
     position, velocity = plane((5.0, 6.0, 7.0), first, np.array([8.0, 9.0]), (0.1, 0.2, 0.3))
-    assert position.tolist() == [[one, 6.0, last] for last in (8.0, 9.0) for one in first]
+    assert position.tolist() == [[x, 6.0, last] for last in (8.0, 9.0) for x in first]
     assert velocity.tolist() == [[0.1, 0.2, 0.3]] * 8
 
 
@@ -102,19 +102,19 @@ def test_attractors_are_read_back_unchanged(searched, place, pairs):
     """This includes returns, mirror images and all values that determine a label."""
     table, returns, rows = searched
     model = MODEL.at((0.08, 0.1)[place])
-    found, expected = known_attractors(table, returns, model), [row.attractor for row in rows[place]]
-    assert found.side.tolist() == [row.side for row in rows[place]]
-    assert np.count_nonzero(found.side) == 2 * pairs
+    restored, expected = known_attractors(table, returns, model), [row.attractor for row in rows[place]]
+    assert restored.side.tolist() == [row.side for row in rows[place]]
+    assert np.count_nonzero(restored.side) == 2 * pairs
     order = [row.index for row in rows[place]]
-    for one, other in zip(found.attractors, expected, strict=True):
-        assert order[one.partner] == other.partner
+    for attractor, other in zip(restored.attractors, expected, strict=True):
+        assert order[attractor.partner] == other.partner
         for name in ("symmetry", "radius", "slow", "close_returns", "patience"):
-            assert getattr(one, name) == getattr(other, name)
+            assert getattr(attractor, name) == getattr(other, name)
         for name in ("kind", "block", "mirror_block", "spacing", "mean_distance", "section_period"):
-            assert getattr(one.motion, name) == getattr(other.motion, name)
+            assert getattr(attractor.motion, name) == getattr(other.motion, name)
         # Positions are stored relative to the driver.
-        assert one.motion.returns == pytest.approx(other.motion.returns, abs=1e-15)
-        assert one.motion.mirror_returns == pytest.approx(other.motion.mirror_returns, abs=1e-15)
+        assert attractor.motion.returns == pytest.approx(other.motion.returns, abs=1e-15)
+        assert attractor.motion.mirror_returns == pytest.approx(other.motion.mirror_returns, abs=1e-15)
 
 
 @pytest.mark.parametrize(

@@ -25,40 +25,40 @@ def pair_counts(fraction, noise=0.01, counts=None):
 
 @pytest.mark.parametrize(("label", "alpha"), [(half_plane, 1.0), (disc, 1.0), *CANTOR])
 def test_known_exponents(label, alpha):
-    found = exponent_of(label, 4000)
-    value, error = found.alpha
-    assert found.kind == ExponentKind.SINGLE
+    exponent = exponent_of(label, 4000)
+    value, error = exponent.alpha
+    assert exponent.kind == ExponentKind.SINGLE
     assert error < 0.04
     assert value == pytest.approx(alpha, abs=3.0 * error + 0.01)
-    slope, slope_error = (part[FITTED_FROM:] for part in found.local)
+    slope, slope_error = (part[FITTED_FROM:] for part in exponent.local)
     assert np.abs(slope - alpha).max() < 0.25
     assert np.mean(np.abs(slope - alpha) < 3.0 * slope_error + 0.1) > 0.8
 
 
 @pytest.mark.parametrize(("label", "alpha"), CANTOR[:2])
 def test_the_error_is_the_scatter_over_seeds(label, alpha):
-    found = np.array([exponent_of(label, 1200, seed).alpha for seed in range(40)])
-    miss = np.abs(found[:, 0] - alpha) / found[:, 1]
+    alphas = np.array([exponent_of(label, 1200, seed).alpha for seed in range(40)])
+    miss = np.abs(alphas[:, 0] - alpha) / alphas[:, 1]
     assert 0.45 < (miss < 1.0).mean() < 0.9
     assert (miss < 2.5).mean() > 0.85
-    assert found[:, 0].mean() == pytest.approx(alpha, abs=4.0 * found[:, 0].std() / np.sqrt(len(found)))
-    assert np.sqrt((found[:, 1] ** 2).mean()) == pytest.approx(found[:, 0].std(ddof=1), rel=0.45)
+    assert alphas[:, 0].mean() == pytest.approx(alpha, abs=4.0 * alphas[:, 0].std() / np.sqrt(len(alphas)))
+    assert np.sqrt((alphas[:, 1] ** 2).mean()) == pytest.approx(alphas[:, 0].std(ddof=1), rel=0.45)
 
 
 def test_a_boundary_without_a_single_exponent():
-    found = exponent_of(striped, 2000)
-    assert found.kind == ExponentKind.VARYING
-    assert np.isnan(found.alpha).all()
-    assert found.change[0] > 0.5
-    assert found.local[0][:4] == pytest.approx(0.0, abs=0.15)
-    assert found.local[0][-3:] == pytest.approx(1.0, abs=0.15)
+    exponent = exponent_of(striped, 2000)
+    assert exponent.kind == ExponentKind.VARYING
+    assert np.isnan(exponent.alpha).all()
+    assert exponent.change[0] > 0.5
+    assert exponent.local[0][:4] == pytest.approx(0.0, abs=0.15)
+    assert exponent.local[0][-3:] == pytest.approx(1.0, abs=0.15)
 
 
 def test_there_is_no_exponent_if_too_few_pairs_differ():
     for label in (lambda x: np.zeros(len(x), dtype=int), lambda x: np.full(len(x), -1)):
-        found = exponent_of(label, 400)
-        assert found.kind == ExponentKind.UNKNOWN
-        assert np.isnan([*found.alpha, *found.change, *found.local[0]]).all()
+        exponent = exponent_of(label, 400)
+        assert exponent.kind == ExponentKind.UNKNOWN
+        assert np.isnan([*exponent.alpha, *exponent.change, *exponent.local[0]]).all()
     assert exponent_of(half_plane, 0).kind == ExponentKind.UNKNOWN
     assert np.isnan(exponent_of(half_plane, 0).fraction).all()
 
@@ -67,10 +67,10 @@ def test_exponent_of_counts():
     """f = 3 ε^0.4; four separations with eight pairs are enough, and separations after a gap do not count."""
     fraction = 3.0 * np.array(SEPARATIONS) ** 0.4
     assert uncertainty_exponent(pair_counts(fraction, 0.0)).alpha == pytest.approx((0.4, 0.0), abs=1e-9)
-    found = uncertainty_exponent(pair_counts(fraction))
-    assert found.kind == ExponentKind.SINGLE
-    assert found.alpha[0] == pytest.approx(0.4, abs=3.0 * found.alpha[1])
-    assert found.fraction[1] == pytest.approx(fraction * 0.01 / np.sqrt(BATCHES), rel=0.5)
+    exponent = uncertainty_exponent(pair_counts(fraction))
+    assert exponent.kind == ExponentKind.SINGLE
+    assert exponent.alpha[0] == pytest.approx(0.4, abs=3.0 * exponent.alpha[1])
+    assert exponent.fraction[1] == pytest.approx(fraction * 0.01 / np.sqrt(BATCHES), rel=0.5)
     few = [500] * FITTED_FROM + [8, 8, 8, 8, 7] + [500] * (len(SEPARATIONS) - FITTED_FROM - 5)
     bent = np.where(np.arange(len(SEPARATIONS)) > FITTED_FROM + 3, 1e-3 * fraction, fraction)
     assert uncertainty_exponent(pair_counts(bent, 0.0, few)).alpha[0] == pytest.approx(0.4, abs=1e-9)
@@ -96,6 +96,6 @@ def test_a_change_counts_if_it_is_large_and_beyond_its_error(bend, noise, counts
     """The slope is 0.5 at first, 0.5 + bend at last: a change of 3.4 errors at a noise of 0.7, of 2.9 at 0.8."""
     z = (X - X[FITTED_FROM]) / (X[-1] - X[FITTED_FROM])
     fraction = np.exp((X[-1] - X[FITTED_FROM]) * (0.5 * z + 0.5 * bend * z**2) - 1.0)
-    found = uncertainty_exponent(pair_counts(fraction, noise))
-    assert found.kind == (ExponentKind.VARYING if counts else ExponentKind.SINGLE)
-    assert found.change[0] == pytest.approx(bend, abs=0.01 + 4.0 * found.change[1])
+    exponent = uncertainty_exponent(pair_counts(fraction, noise))
+    assert exponent.kind == (ExponentKind.VARYING if counts else ExponentKind.SINGLE)
+    assert exponent.change[0] == pytest.approx(bend, abs=0.01 + 4.0 * exponent.change[1])

@@ -12,13 +12,13 @@ MODEL = Model(Chain(30, coupling=20.0, pulling=1.0), law_of("carlson_langer", 2.
 
 
 def test_profiles_add_up_to_moments():
-    found = record_events(MODEL, at_rest(MODEL), 200.0, profiles=True)
-    assert len(found.time) > 50
-    assert (np.diff(found.time) >= 0.0).all()
-    parts = np.split(found.slip, found.slip_end[:-1])
-    assert np.allclose([part.sum() for part in parts], found.moment, rtol=1e-13)
-    assert [len(part) for part in parts] == found.blocks.tolist()
-    assert [part.max() for part in parts] == found.largest_slip.tolist()
+    events = record_events(MODEL, at_rest(MODEL), 200.0, profiles=True)
+    assert len(events.time) > 50
+    assert (np.diff(events.time) >= 0.0).all()
+    parts = np.split(events.slip, events.slip_end[:-1])
+    assert np.allclose([part.sum() for part in parts], events.moment, rtol=1e-13)
+    assert [len(part) for part in parts] == events.blocks.tolist()
+    assert [part.max() for part in parts] == events.largest_slip.tolist()
     assert len(record_events(MODEL, at_rest(MODEL), 200.0).slip) == 0
 
 
@@ -41,38 +41,38 @@ def test_consecutive_runs_have_the_catalogue_of_the_whole_run(blocks):
     order = np.argsort(time, kind="stable")
     assert np.array_equal(time[order], whole.time)
     for name in ("duration", "epicentre", "moment", "peak_velocity", "energy_released", "interval"):
-        found = np.concatenate([getattr(part, name) for part in parts])[order]
-        assert np.allclose(found, getattr(whole, name), rtol=1e-12, atol=1e-15, equal_nan=True), name
+        values = np.concatenate([getattr(part, name) for part in parts])[order]
+        assert np.allclose(values, getattr(whole, name), rtol=1e-12, atol=1e-15, equal_nan=True), name
 
 
 @pytest.mark.parametrize("ends", ["open", "ring"])
 def test_ends_and_intervals(ends):
     """Events cover all blocks between their ends, also across the seam of a ring; intervals are those of the blocks."""
     model = Model(Chain(30, coupling=9.0, pulling=1.0, ends=ends), law_of("carlson_langer", 3.0), 0.01)
-    found = record_events(model, at_rest(model), 1500.0, profiles=True)
-    first, last = found.first_block, found.last_block
-    blocks = [set(part.tolist()) for part in np.split(found.slip_block, found.slip_end[:-1])]
+    events = record_events(model, at_rest(model), 1500.0, profiles=True)
+    first, last = events.first_block, events.last_block
+    blocks = [set(part.tolist()) for part in np.split(events.slip_block, events.slip_end[:-1])]
     for part, low, high in zip(blocks, first, last, strict=True):
         assert part == {(k - 1) % 30 + 1 for k in range(low, high + 1 + 30 * (low > high))}
     assert (first > last).any() == (ends == "ring")
-    assert not (found.interval <= 0.0).any()
-    stop, known = found.time + found.duration, 0
-    for k, epicentre in enumerate(found.epicentre):
+    assert not (events.interval <= 0.0).any()
+    stop, count = events.time + events.duration, 0
+    for k, epicentre in enumerate(events.epicentre):
         before = [j for j in range(k) if epicentre in blocks[j]]
         # An event that has not ended, or that outlasted a later one, may have reached the block after it.
-        if before and np.argmax(stop[before]) == len(before) - 1 and stop[before[-1]] < found.time[k]:
-            known += 1
-            assert found.interval[k] == pytest.approx(found.time[k] - found.time[before[-1]], rel=1e-12)
-    assert known > 0.7 * len(found.time)
+        if before and np.argmax(stop[before]) == len(before) - 1 and stop[before[-1]] < events.time[k]:
+            count += 1
+            assert events.interval[k] == pytest.approx(events.time[k] - events.time[before[-1]], rel=1e-12)
+    assert count > 0.7 * len(events.time)
 
 
 def test_the_largest_slip_may_be_backward():
     """A block ahead of the driver slips back."""
     model = Model(Chain(1, pulling=1.0), law_of("nonlinear", 0.3), 0.1, "symmetric")
     ahead = ChainState(1.5 - model.sliding_offset, np.zeros(1), np.ones(1, dtype=bool))
-    found = record_events(model, ahead, 5.0)
-    assert found.moment[0] < -0.5
-    assert found.largest_slip[0] == -found.moment[0]
+    events = record_events(model, ahead, 5.0)
+    assert events.moment[0] < -0.5
+    assert events.largest_slip[0] == -events.moment[0]
 
 
 def test_empty_windows_are_refused():
@@ -89,7 +89,7 @@ def test_all_events_count_unless_a_beginning_is_given():
     """Nothing depends on where the clock starts, also if it starts below 0."""
     start = at_rest(MODEL)
     early = ChainState(start.position, start.velocity, start.stuck, -1000.0)
-    found, shifted = record_events(MODEL, start, 200.0), record_events(MODEL, early, -800.0)
+    events, shifted = record_events(MODEL, start, 200.0), record_events(MODEL, early, -800.0)
     assert len(shifted.time) > 100
     # Before chaos amplifies the rounding of the clock.
-    assert np.allclose(shifted.time[:20] + 1000.0, found.time[:20], rtol=0.0, atol=1e-9)
+    assert np.allclose(shifted.time[:20] + 1000.0, events.time[:20], rtol=0.0, atol=1e-9)

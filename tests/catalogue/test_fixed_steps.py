@@ -50,8 +50,8 @@ def test_runs_of_fixed_steps_can_be_continued():
     first = record_events(MODEL, START, middle, **options)
     second = record_events(MODEL, first.final, END, **options)
     for name in COLUMNS:
-        found = np.concatenate([getattr(first, name), getattr(second, name)])
-        assert np.allclose(found, getattr(whole, name), rtol=1e-12, equal_nan=True), name
+        values = np.concatenate([getattr(first, name), getattr(second, name)])
+        assert np.allclose(values, getattr(whole, name), rtol=1e-12, equal_nan=True), name
 
 
 def test_unknown_solvers_and_steps_are_refused():

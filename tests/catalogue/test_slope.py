@@ -24,9 +24,9 @@ def draw_magnitudes(b, low, high, count, seed):
 
 @pytest.mark.parametrize(("b", "low", "high"), [(0.5, -3.0, 4.0), (1.0, 0.0, 2.0), (-0.4, 0.0, 3.0), (0.0, 1.0, 2.0)])
 def test_slope_and_its_error(b, low, high):
-    found = [fit_slope(draw_magnitudes(b, low, high, 200, seed), low, high) for seed in range(300)]
-    slopes = np.array([item.b for item in found])
-    errors = np.array([item.error for item in found])
+    fits = [fit_slope(draw_magnitudes(b, low, high, 200, seed), low, high) for seed in range(300)]
+    slopes = np.array([item.b for item in fits])
+    errors = np.array([item.error for item in fits])
     assert abs(slopes.mean() - b) < 4.0 * slopes.std() / np.sqrt(300)
     assert slopes.std() == pytest.approx(errors.mean(), rel=0.15)
     for width, share in ((1.0, 0.683), (2.0, 0.954)):
@@ -53,8 +53,8 @@ def test_p_rejects_a_rate_that_bends():
     refused_count = 0
     for seed in range(30):
         magnitude = draw_magnitudes(0.7, 0.0, 4.0, 2000, seed)
-        kept = np.random.default_rng(1000 + seed).random(2000) < 1.0 - np.exp(-2.0 * magnitude) / 2.0
-        refused_count += fit_slope(magnitude[kept], 0.0, 4.0).p_value < 0.05
+        mask = np.random.default_rng(1000 + seed).random(2000) < 1.0 - np.exp(-2.0 * magnitude) / 2.0
+        refused_count += fit_slope(magnitude[mask], 0.0, 4.0).p_value < 0.05
     assert refused_count > 24
 
 
@@ -90,11 +90,11 @@ def test_steep_slopes_have_a_fit(b, high):
     magnitude = steep if b > 0.0 else high - steep
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        found = fit_slope(magnitude, 0.0, high)
-    assert abs(found.b - b) < 3.0 * found.error
-    assert found.error == pytest.approx(abs(b) / 20.0, rel=0.2)
-    assert found.p_value > 0.05
-    assert abs(found.b) == pytest.approx(fit_slope(steep, 0.0).b, rel=1e-6)
+        fit = fit_slope(magnitude, 0.0, high)
+    assert abs(fit.b - b) < 3.0 * fit.error
+    assert fit.error == pytest.approx(abs(b) / 20.0, rel=0.2)
+    assert fit.p_value > 0.05
+    assert abs(fit.b) == pytest.approx(fit_slope(steep, 0.0).b, rel=1e-6)
 
 
 def test_infinite_magnitudes():
@@ -120,14 +120,14 @@ def test_an_end_far_beyond_all_events_does_not_change_the_fit(far):
     magnitude = draw_magnitudes(0.9, 0.0, np.inf, 200, 4)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        whole, found, rising = (
+        whole, fit, rising = (
             fit_slope(magnitude, 0.0),
             fit_slope(magnitude, 0.0, far),
             fit_slope(-magnitude, -far, 0.0),
         )
-    assert (found.b, found.error, found.p_value) == (whole.b, whole.error, whole.p_value)
+    assert (fit.b, fit.error, fit.p_value) == (whole.b, whole.error, whole.p_value)
     assert (rising.b, rising.error, rising.p_value) == (-whole.b, whole.error, whole.p_value)
-    assert (found.high, rising.low) == (far, -far)
+    assert (fit.high, rising.low) == (far, -far)
 
 
 @settings(max_examples=60)
@@ -149,12 +149,12 @@ def test_slopes_scale_with_the_magnitudes(exponent, width, rises, beyond):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         if rises and np.isfinite(end):
-            found, sign = fit_slope(-inside, -end, 0.0), -1.0
+            fit, sign = fit_slope(-inside, -end, 0.0), -1.0
         else:
-            found, sign = fit_slope(inside, 0.0, end), 1.0
-    assert found.b * size == pytest.approx(sign * expected.b, rel=1e-9)
-    assert found.error * size == pytest.approx(expected.error, rel=1e-9)
-    assert found.p_value == pytest.approx(expected.p_value, abs=0.002)
+            fit, sign = fit_slope(inside, 0.0, end), 1.0
+    assert fit.b * size == pytest.approx(sign * expected.b, rel=1e-9)
+    assert fit.error * size == pytest.approx(expected.error, rel=1e-9)
+    assert fit.p_value == pytest.approx(expected.p_value, abs=0.002)
 
 
 @pytest.mark.parametrize(
@@ -171,9 +171,9 @@ def test_slopes_scale_with_the_magnitudes(exponent, width, rises, beyond):
 def test_magnitudes_and_ends_at_the_limit_of_numbers(size, low, high):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        found = fit_slope(size * draw_magnitudes(1.0, 0.0, np.inf, 200, 4), low, high)
-    assert np.isfinite([found.b, found.error, found.p_value]).all()
-    assert found.error > 0.0
+        fit = fit_slope(size * draw_magnitudes(1.0, 0.0, np.inf, 200, 4), low, high)
+    assert np.isfinite([fit.b, fit.error, fit.p_value]).all()
+    assert fit.error > 0.0
 
 
 def test_magnitudes_that_hardly_differ_have_no_slope():

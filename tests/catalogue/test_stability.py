@@ -49,22 +49,22 @@ def test_exponents_under_quasistatic_loading_are_those_of_the_maps_from_event_to
     """All exponents agree; each map has one that is −∞. They were 0 when batches ended at a time of the slip clock."""
     model = Model(Chain(blocks, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 1.0)
     start, begin, end = rough(model), 2.0, 2.0 + 60.0 / blocks
-    found = event_exponents(model, start, end, begin=begin, count=blocks, loading="quasistatic")
+    spectrum = event_exponents(model, start, end, begin=begin, count=blocks, loading="quasistatic")
     # The run is computed as a whole, like the perturbations; in chaos a run in groups would diverge from it.
     time = record_catalogue(model, start, end, False, loading="quasistatic")[0]["time"]
-    before, seen = time[time < begin], time[time >= begin]
-    assert found.events == len(seen) > 20
+    before, counted = time[time < begin], time[time >= begin]
+    assert spectrum.events == len(counted) > 20
     # Moments of rest before and after each event; the perturbations align until the window begins.
-    edges = np.concatenate([before[-1:], seen, [end]])
+    edges = np.concatenate([before[-1:], counted, [end]])
     rest = np.concatenate([0.5 * (before[:-1] + before[1:]), 0.5 * (edges[:-1] + edges[1:])])
-    growth = growth_between(model, start, rest, blocks, "quasistatic")[-len(seen) :]
-    finite, expected = found.exponent[:-1], np.sort(growth.mean(axis=0)[:-1])[::-1]
+    growth = growth_between(model, start, rest, blocks, "quasistatic")[-len(counted) :]
+    finite, expected = spectrum.exponent[:-1], np.sort(growth.mean(axis=0)[:-1])[::-1]
     assert finite[0] == pytest.approx(expected[0], rel=1e-5)
     assert finite.sum() == pytest.approx(expected.sum(), abs=1e-6)
     # The exponents in between align slowly, each at a rate given by its distance from the next.
     assert finite == pytest.approx(expected, abs=5e-3)
-    assert found.exponent[-1] == -np.inf
-    assert found.exponent[0] > 0.0
+    assert spectrum.exponent[-1] == -np.inf
+    assert spectrum.exponent[0] > 0.0
 
 
 def rests(model, start, end):
@@ -83,24 +83,24 @@ def test_exponents_under_a_steady_driver_are_those_of_the_flow(blocks):
     start = rough(model)
     times = rests(model, start, 60.0 / model.v)
     times = times[times > 6.0 / model.v]
-    found = event_exponents(model, start, times[-1], begin=times[0], count=2, loading="steady")
+    spectrum = event_exponents(model, start, times[-1], begin=times[0], count=2, loading="steady")
     growth = growth_between(model, start, np.concatenate([rests(model, start, times[0]), times]), 2, "steady")
     growth = growth[-len(times) + 1 :]
-    assert found.events > 40
+    assert spectrum.events > 40
     # From rest to rest, the largest exponent and the sum of both agree to rounding.
-    expected = growth.sum(axis=0) / found.events
-    assert found.exponent[0] == pytest.approx(expected[0], abs=1e-7)
-    assert found.exponent.sum() == pytest.approx(expected.sum(), abs=1e-7)
+    expected = growth.sum(axis=0) / spectrum.events
+    assert spectrum.exponent[0] == pytest.approx(expected[0], abs=1e-7)
+    assert spectrum.exponent.sum() == pytest.approx(expected.sum(), abs=1e-7)
 
 
 @pytest.mark.parametrize("v", [1e-3, 1e-5])
 def test_one_block_under_a_steady_driver_has_the_exponent_zero(v):
     """Each event repeats the previous one. Windows that ended within slips once gave -0.14 and -0.38."""
     model = Model(Chain(1, pulling=1.0), law_of("carlson_langer", 2.0), v)
-    found = event_exponents(model, rough(model), 10.5 / v, begin=0.7 / v, loading="steady")
-    assert found.events > 10
-    assert found.exponent[0] == pytest.approx(0.0, abs=1e-6)
-    assert found.error[0] < 1e-6
+    spectrum = event_exponents(model, rough(model), 10.5 / v, begin=0.7 / v, loading="steady")
+    assert spectrum.events > 10
+    assert spectrum.exponent[0] == pytest.approx(0.0, abs=1e-6)
+    assert spectrum.error[0] < 1e-6
 
 
 @pytest.mark.parametrize("law", ["linearized", "nonlinear"])
@@ -108,10 +108,10 @@ def test_one_block_has_the_exponent_zero_wherever_the_window_ends(law):
     """It slips for almost half of the time; the last batch once ended within a slip."""
     model = Model(Chain(1, pulling=1.0), law_of(law, 0.3), 0.1)
     start = model.begin(InitialState("rest", (-0.8,), 0.0), "tested")
-    found = [event_exponents(model, start, end, loading="steady") for end in np.arange(300.0, 310.0, 0.25)]
-    assert len({item.events for item in found}) > 1
-    assert [item.exponent[0] for item in found] == pytest.approx(np.zeros(40), abs=1e-10)
-    assert [item.error[0] for item in found] == pytest.approx(np.zeros(40), abs=1e-10)
+    spectra = [event_exponents(model, start, end, loading="steady") for end in np.arange(300.0, 310.0, 0.25)]
+    assert len({item.events for item in spectra}) > 1
+    assert [item.exponent[0] for item in spectra] == pytest.approx(np.zeros(40), abs=1e-10)
+    assert [item.error[0] for item in spectra] == pytest.approx(np.zeros(40), abs=1e-10)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -128,9 +128,9 @@ def test_a_window_that_ends_within_a_slip_counts_up_to_the_last_rest(blocks, see
     still = 0.5 * (time[:-1] + time[1:])[moving[:-1] == 0]
     for end in 0.5 * (time[:-1] + time[1:])[moving[:-1] > 0][-8:]:
         last = still[still < end][-1]
-        found, expected = (event_exponents(model, start, t, begin=100.0, loading="steady") for t in (end, last))
-        assert found.events == expected.events > 20
-        assert found.exponent[0] == pytest.approx(expected.exponent[0], rel=1e-9)
+        spectrum, expected = (event_exponents(model, start, t, begin=100.0, loading="steady") for t in (end, last))
+        assert spectrum.events == expected.events > 20
+        assert spectrum.exponent[0] == pytest.approx(expected.exponent[0], rel=1e-9)
 
 
 @pytest.mark.parametrize("loading", ["steady", "quasistatic"])
@@ -138,17 +138,17 @@ def test_a_window_that_ends_within_a_slip_counts_up_to_the_last_rest(blocks, see
 def test_exponents_per_event_depend_on_no_unit(blocks, loading):
     """Springs 2ⁿ times as stiff, masses 2ⁿ times as light: the same events in shorter times."""
     position = np.random.default_rng(3).integers(-1000, -500, blocks) / 1024.0
-    found = []
+    spectra = []
     for factor in (1.0, 16.0, 1024.0):
         chain = Chain(blocks, coupling=2.0 * factor, pulling=factor, mass=1.0 / factor)
         model = Model(chain, law_of("carlson_langer", 2.0, {"sigma": 0.0625}), 0.125)
         start = ChainState(position / factor, np.zeros(blocks), np.ones(blocks, dtype=bool))
-        found.append(event_exponents(model, start, 128.0 / factor, begin=16.0 / factor, count=2, loading=loading))
-    assert found[0].events > 10
-    for other in found[1:]:
-        assert other.events == found[0].events
-        assert np.array_equal(other.exponent, found[0].exponent)
-        assert np.array_equal(other.error, found[0].error)
+        spectra.append(event_exponents(model, start, 128.0 / factor, begin=16.0 / factor, count=2, loading=loading))
+    assert spectra[0].events > 10
+    for other in spectra[1:]:
+        assert other.events == spectra[0].events
+        assert np.array_equal(other.exponent, spectra[0].exponent)
+        assert np.array_equal(other.error, spectra[0].error)
 
 
 def test_a_chain_that_slips_at_the_start_or_never_rests_has_exponents():
@@ -161,13 +161,13 @@ def test_a_chain_that_slips_at_the_start_or_never_rests_has_exponents():
     time, _, kind = runner.events()
     moving = 1 + np.cumsum(np.where(kind == 1, 1, -1))
     rest = time[np.flatnonzero(moving == 0)[0]]
-    found = event_exponents(model, slipping, 2000.0, loading="steady")
+    spectrum = event_exponents(model, slipping, 2000.0, loading="steady")
     events = record_events(model, slipping, 2000.0)
     # All events but those before the first rest.
-    assert found.events == np.count_nonzero(events.time > rest) > 20
+    assert spectrum.events == np.count_nonzero(events.time > rest) > 20
     restless = Model(Chain(3), law_of("linearized", 0.05), 0.3)
-    found = event_exponents(restless, restless.begin(PAPER_STATES["minus"]), 400.0, begin=100.0, loading="steady")
-    assert found.status == Status.COMPLETED
+    spectrum = event_exponents(restless, restless.begin(PAPER_STATES["minus"]), 400.0, begin=100.0, loading="steady")
+    assert spectrum.status == Status.COMPLETED
 
 
 @pytest.mark.parametrize("loading", ["steady", "quasistatic"])
@@ -188,10 +188,10 @@ def test_multipliers_begin_at_rest(loading, share):
         ):
             event_multipliers(model, start, end, loading=loading)
         return
-    found = event_multipliers(model, start, end, loading=loading)
+    multipliers = event_multipliers(model, start, end, loading=loading)
     # Perturbed to either side a block at its threshold does not start at once.
     if share == 1.0:
-        assert np.isfinite(found).all()
+        assert np.isfinite(multipliers).all()
         return
     columns = []
     for shift in 1e-6 * np.eye(3):
@@ -206,8 +206,8 @@ def test_multipliers_begin_at_rest(loading, share):
         # The clock of the run is fixed here instead of the next start, so that a common shift of all blocks remains.
         keep = np.abs(expected - 1.0).argmin()
         assert expected[keep] == pytest.approx(1.0, abs=1e-5)
-        expected, found = np.delete(expected, keep), found[:-1]
-    assert found == pytest.approx(expected, rel=1e-4, abs=1e-6)
+        expected, multipliers = np.delete(expected, keep), multipliers[:-1]
+    assert multipliers == pytest.approx(expected, rel=1e-4, abs=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -257,23 +257,23 @@ def test_the_exponent_of_two_blocks_is_that_of_their_map():
     time = record_events(model, start, 100.0, loading="quasistatic").time
     # Perturbations have one direction from the first event on.
     begin, end = (0.5 * (time[k - 1] + time[k]) for k in (5, 45))
-    found = event_exponents(model, start, end, begin=begin)
-    assert found.events == 40
-    assert found.exponent[0] == pytest.approx(np.mean(rates[5:]), abs=1e-4)
+    spectrum = event_exponents(model, start, end, begin=begin)
+    assert spectrum.events == 40
+    assert spectrum.exponent[0] == pytest.approx(np.mean(rates[5:]), abs=1e-4)
 
 
 @pytest.mark.parametrize("loading", ["steady", "quasistatic"])
 def test_exponents_do_not_depend_on_the_clock_of_the_state(loading):
     """Errors were once 6.7 times too small for a late state, whose events all fell into one batch."""
     model = Model(Chain(3, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 0.1)
-    found = [
+    spectra = [
         event_exponents(model, rough(model, time=time), time + 512.0, loading=loading)
         for time in (0.0, 2.0**14, -(2.0**14))
     ]
-    for other in found[1:]:
-        assert other.events == found[0].events
-        assert other.exponent == pytest.approx(found[0].exponent, rel=1e-6)
-        assert other.error == pytest.approx(found[0].error, rel=1e-3)
+    for other in spectra[1:]:
+        assert other.events == spectra[0].events
+        assert other.exponent == pytest.approx(spectra[0].exponent, rel=1e-6)
+        assert other.error == pytest.approx(spectra[0].error, rel=1e-3)
 
 
 @pytest.mark.parametrize("loading", ["steady", "quasistatic"])
@@ -283,6 +283,6 @@ def test_no_exponent_without_an_event(loading, end):
     law = law_of("linearized", 0.3) if loading == "steady" else law_of("carlson_langer", 0.0, {"sigma": 0.2})
     model = Model(Chain(1, pulling=1.0), law, 0.1 if loading == "steady" else 0.01)
     start = model.begin(InitialState("rest", (-0.8,), (0.0,)), "tested")
-    found = event_exponents(model, start, end, loading=loading)
-    assert found.events == 0
-    assert np.isnan([found.exponent, found.error]).all()
+    spectrum = event_exponents(model, start, end, loading=loading)
+    assert spectrum.events == 0
+    assert np.isnan([spectrum.exponent, spectrum.error]).all()

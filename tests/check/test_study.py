@@ -73,7 +73,7 @@ def foreign(path):
     write_summary(xr.Dataset({"x": ("x", np.zeros(3))}), path)
 
 
-def by(part, other):
+def replacement(part, other):
     """Return a function that replaces a file by that of another name."""
     return lambda path: shutil.copy(str(path).replace(part, other), path)
 
@@ -89,8 +89,8 @@ BAD = [
     ("figures/lyapunov.pdf", begun, "corrupt", "was changed after it was written"),
     ("report.html", emptied, "corrupt", "is empty"),
     ("summary/mean_distance.nc", foreign, "stale", "was not made in a study"),
-    (TILES[1], by("1.nc", "0.nc"), "stale", f"is another file: got {TILES[0]}, expected {TILES[1]}"),
-    (RUNS[0], by("map", "rk4"), "stale", "is another run: solver: got rk4, expected map"),
+    (TILES[1], replacement("1.nc", "0.nc"), "stale", f"is another file: got {TILES[0]}, expected {TILES[1]}"),
+    (RUNS[0], replacement("map", "rk4"), "stale", "is another run: solver: got rk4, expected map"),
     (RUNS[1], Path.unlink, "missing", "not made yet"),
 ]
 

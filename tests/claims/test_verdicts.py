@@ -12,9 +12,9 @@ from scipy.integrate import solve_ivp
 from burridge_knopoff import Chain, InitialState, Model, law_of
 from burridge_knopoff.attractors.lookup import reached_values
 from burridge_knopoff.claims.conventions import combine_readings, judge_conventions
+from burridge_knopoff.claims.equations import equation_difference
 from burridge_knopoff.claims.ledger import judge
 from burridge_knopoff.claims.paper import CLAIMS
-from burridge_knopoff.claims.paper.model import equation_difference
 from burridge_knopoff.claims.verdict import (
     CONVENTION,
     FAILS,

@@ -39,12 +39,12 @@ def ends(a):
 )
 def test_a_change_has_an_entry_for_each_of_its_two_ends(first, second, expected):
     slots = {"branch": [[0], [1]], "kind": [[1], [1]], "lifetime_low": [[np.nan]] * 2, "lifetime_high": [[np.nan]] * 2}
-    one = xr.Dataset({name: (("value", "attractor"), values) for name, values in slots.items()})
-    one = one.assign(a=("value", A), in_grid=("value", [1, 1]), side=one["branch"] * 0)
+    table = xr.Dataset({name: (("value", "attractor"), values) for name, values in slots.items()})
+    table = table.assign(a=("value", A), in_grid=("value", [1, 1]), side=table["branch"] * 0)
     change = BranchChange(0, 1, 0, 0, 0, 1, Change.CHANGE)
     followed = FollowedOrbits([ends(first), ends(second)], [(0, 0), (1, 0)], {(0, 0): 0, (1, 0): 1})
-    found = entries(one, [change], followed)
-    assert [entry.a for entry in found] == pytest.approx(expected, rel=1e-15)
-    assert {(entry.low, entry.high, entry.from_branch, entry.to_branch) for entry in found} == {(*A, 0, 1)}
+    listed = entries(table, [change], followed)
+    assert [entry.a for entry in listed] == pytest.approx(expected, rel=1e-15)
+    assert {(entry.low, entry.high, entry.from_branch, entry.to_branch) for entry in listed} == {(*A, 0, 1)}
     located = first is not None or second is not None
-    assert {entry.kind for entry in found} == {BifurcationKind.FOLD if located else BifurcationKind.UNDETERMINED}
+    assert {entry.kind for entry in listed} == {BifurcationKind.FOLD if located else BifurcationKind.UNDETERMINED}

@@ -29,24 +29,24 @@ def test_orbits_of_different_periods_are_continued_separately(monkeypatch, proce
         slot = round(float(at.position[0] + model.sliding_offset[0]))
         return replace(orbit, return_time=periods[slot] * orbit.return_time)
 
-    def alone(one, *_):
-        if one.period == pytest.approx((failing or 0.0) * orbit.period, rel=1e-6):
+    def alone(start, *_):
+        if start.period == pytest.approx((failing or 0.0) * orbit.period, rel=1e-6):
             raise OrbitError("cannot be followed")
-        return HalfBranch([begin_branch(one, True, line_along_a(one.model.chain))])
+        return HalfBranch([begin_branch(start, True, line_along_a(start.model.chain))])
 
     monkeypatch.setattr(followed_orbits, "limit_cycle", limit_cycle)
     monkeypatch.setattr(followed_orbits, "follow_half_branch", alone)
     slots = {"branch": [0, 1, 2, 3], "side": [0] * 4, "kind": [MotionKind.PERIODIC] * 4, "period": [6.0] * 4}
-    one = xr.Dataset({name: ("attractor", values) for name, values in slots.items()}).expand_dims("value")
-    one.attrs["refine_longest_period"] = 500.0
+    table = xr.Dataset({name: ("attractor", values) for name, values in slots.items()}).expand_dims("value")
+    table.attrs["refine_longest_period"] = 500.0
     names, position = ("value", "attractor", "block"), np.zeros((1, 4, 3))
     position[0, :, 0] = range(4)
-    one = one.assign(a=("value", [0.05]), in_grid=("value", [1]), position=(names, position))
-    one["velocity"] = names, np.zeros((1, 4, 3))
-    found = followed_orbits.follow_orbits(orbit.model, one, [], processes)
-    assert found.of_place == {(0, slot): number for slot, number in numbers.items()}
-    assert [found.of_place[place] for place in found.places] == list(range(len(expected)))
-    followed = [item.upward.orbits[0].orbit.period / orbit.period for item in found.segments]
+    table = table.assign(a=("value", [0.05]), in_grid=("value", [1]), position=(names, position))
+    table["velocity"] = names, np.zeros((1, 4, 3))
+    followed_set = followed_orbits.follow_orbits(orbit.model, table, [], processes)
+    assert followed_set.of_place == {(0, slot): number for slot, number in numbers.items()}
+    assert [followed_set.of_place[place] for place in followed_set.places] == list(range(len(expected)))
+    followed = [item.upward.orbits[0].orbit.period / orbit.period for item in followed_set.segments]
     assert followed == pytest.approx(expected)
 
 
@@ -73,11 +73,11 @@ def test_between_values_of_the_grid_orbits_are_continued_next_to_changes(changes
     kind[3] = MotionKind.CHAOTIC
     slots = {"branch": np.tile([0, 1], (5, 1)), "side": np.tile([0, -1], (5, 1)), "kind": kind}
     slots["period"] = np.full((5, 2), 6.0)
-    one = xr.Dataset({name: (("value", "attractor"), values) for name, values in slots.items()})
-    one.attrs["refine_longest_period"] = 500.0
-    one = one.assign(in_grid=("value", [1, 0, 0, 0, 1]))
+    table = xr.Dataset({name: (("value", "attractor"), values) for name, values in slots.items()})
+    table.attrs["refine_longest_period"] = 500.0
+    table = table.assign(in_grid=("value", [1, 0, 0, 0, 1]))
     known_changes = [BranchChange(*change, 0, 0, Change.CHANGE) for change in changes]
-    assert followed_orbits._places(one, known_changes) == expected
+    assert followed_orbits._places(table, known_changes) == expected
     # Longer orbits are not followed.
-    one["period"][0] = 501.0
-    assert followed_orbits._places(one, known_changes) == [place for place in expected if place[0] != 0]
+    table["period"][0] = 501.0
+    assert followed_orbits._places(table, known_changes) == [place for place in expected if place[0] != 0]

@@ -16,9 +16,11 @@ def pair(place, ahead, mean=0.1):
     return [first, replace(first, motion=first.motion.mirrored(), partner=0)]
 
 
-def follow_branches(found, memory):
+def follow_branches(attractors, memory):
     """Return the branches, and sides, of attractors at a = 0.1, 0.2, …"""
-    numbers = branches([(k + 1) / 10 for k in range(len(found))], found, range(len(found)), memory, Matcher(1.0))
+    numbers = branches(
+        [(k + 1) / 10 for k in range(len(attractors))], attractors, range(len(attractors)), memory, Matcher(1.0)
+    )
     return tuple([row.tolist() for row in values] for values in numbers)
 
 
@@ -37,9 +39,9 @@ def test_the_distance_of_sets_is_the_smaller_of_both_directions():
 
 def test_an_orbit_and_the_chaos_around_it_continue_as_separate_branches():
     """The chaotic sets are farther from each other than an orbit is from any of them."""
-    here, there = np.linspace(0.0, 0.1, 6), np.linspace(0.008, 0.108, 6)
-    before = outlines([at(*here, partner=0), at(0.041, partner=1)])
-    after = outlines([at(0.042, partner=0), at(*there, partner=1)])
+    chaos_before, chaos_after = np.linspace(0.0, 0.1, 6), np.linspace(0.008, 0.108, 6)
+    before = outlines([at(*chaos_before, partner=0), at(0.041, partner=1)])
+    after = outlines([at(0.042, partner=0), at(*chaos_after, partner=1)])
     assert Matcher(1.0).match(before, after) == {0: 1, 1: 0}
     # Alone, each may match the other.
     assert Matcher(1.0).match({0: before[0]}, {0: after[0]}) == {0: 0}
@@ -47,9 +49,9 @@ def test_an_orbit_and_the_chaos_around_it_continue_as_separate_branches():
 
 
 def test_returns_are_thinned_out_evenly():
-    own = Outline(at(*np.linspace(0.0, 1.0, 1501))).own[:, 0]
-    assert own == pytest.approx(np.linspace(0.0, 1.0, COMPARED_RETURNS), abs=1e-3)
-    assert len(Outline(at(0.0, 1.0)).own) == 2
+    returns = Outline(at(*np.linspace(0.0, 1.0, 1501))).returns[:, 0]
+    assert returns == pytest.approx(np.linspace(0.0, 1.0, COMPARED_RETURNS), abs=1e-3)
+    assert len(Outline(at(0.0, 1.0)).returns) == 2
 
 
 def test_all_pairs_are_matched_together():
@@ -59,25 +61,27 @@ def test_all_pairs_are_matched_together():
     assert Matcher(1.0).match(before, after) == {0: 0, 1: 1}
     assert Matcher(1.0).match(before, outlines([at(0.015, partner=0)])) == {0: 1}
     limit = SAME_SET
-    for place, found in ((0.99 * limit, {0: 0}), (1.01 * limit, {})):
-        one = {0: Outline(at(0.0))}
-        assert Matcher(1.0).match(one, {0: Outline(at(place))}) == found
-    assert Matcher(1.1).match(one, {0: Outline(at(1.01 * limit))}) == {0: 0}
+    for place, expected in ((0.99 * limit, {0: 0}), (1.01 * limit, {})):
+        first = {0: Outline(at(0.0))}
+        assert Matcher(1.0).match(first, {0: Outline(at(place))}) == expected
+    assert Matcher(1.1).match(first, {0: Outline(at(1.01 * limit))}) == {0: 0}
     assert Matcher(1.0).match({}, after) == {}
 
 
 def test_synchrony_is_matched_only_with_synchrony():
     """This holds however far it has moved."""
     still, far = (at(place, symmetry=SYNCHRONIZED) for place in (0.0, 9.0))
-    for before, after, found in ((still, at(0.0), {}), (at(0.0), still, {}), (still, far, {0: 0})):
-        assert Matcher(1.0).match(outlines([before]), outlines([after])) == found
+    for before, after, expected in ((still, at(0.0), {}), (at(0.0), still, {}), (still, far, {0: 0})):
+        assert Matcher(1.0).match(outlines([before]), outlines([after])) == expected
 
 
 def test_several_synchronized_attractors_are_several_branches():
-    one, other = (at(place, symmetry=SYNCHRONIZED, mean_distance=0.0, partner=k) for k, place in enumerate((0.0, 1.0)))
-    swapped = [replace(other, partner=0), replace(one, partner=1)]
+    first, second = (
+        at(place, symmetry=SYNCHRONIZED, mean_distance=0.0, partner=k) for k, place in enumerate((0.0, 1.0))
+    )
+    swapped = [replace(second, partner=0), replace(first, partner=1)]
     branch, side = branches(
-        [0.1, 0.2, 0.3], [[one, other], swapped, [replace(other, partner=0)]], range(3), 0.1, Matcher(1.0)
+        [0.1, 0.2, 0.3], [[first, second], swapped, [replace(second, partner=0)]], range(3), 0.1, Matcher(1.0)
     )
     assert [row.tolist() for row in branch] == [[0, 1], [1, 0], [1]]
     assert not np.concatenate(side).any()
@@ -97,16 +101,16 @@ def test_branches_are_matched_across_a_pitchfork():
 def test_the_side_is_that_of_the_end_block_ahead_in_position():
     first = pair(0.0, 0.1)[0]
     faster = np.array([0.0, 0.0, 0.0, 0.3, 0.0, 0.0])
-    own, mirrored = first.motion.returns + faster, first.motion.mirror_returns + faster[[2, 1, 0, 5, 4, 3]]
-    first = replace(first, motion=replace(first.motion, returns=own, mirror_returns=mirrored))
+    returns, mirrored = first.motion.returns + faster, first.motion.mirror_returns + faster[[2, 1, 0, 5, 4, 3]]
+    first = replace(first, motion=replace(first.motion, returns=returns, mirror_returns=mirrored))
     assert follow_branches([[first, replace(first, motion=first.motion.mirrored(), partner=0)]], 0.2)[1] == [[1, -1]]
 
 
 def test_an_attractor_that_has_vanished_is_remembered_for_a_while():
     there, else_where = at(0.0), at(1.0)
-    found = [[there], [else_where], [there], [else_where], [else_where]]
-    assert follow_branches(found, 0.2)[0] == [[1], [2], [1], [2], [2]]
-    assert follow_branches(found, 0.1)[0] == [[1], [2], [3], [4], [4]]
+    attractors = [[there], [else_where], [there], [else_where], [else_where]]
+    assert follow_branches(attractors, 0.2)[0] == [[1], [2], [1], [2], [2]]
+    assert follow_branches(attractors, 0.1)[0] == [[1], [2], [3], [4], [4]]
     # Branches at the previous value are matched first.
     assert follow_branches([[there], [at(0.015)], [at(0.012)]], 0.2)[0] == [[1], [1], [1]]
     # A value without attractors does not end a branch.

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import MotionKind, SearchSettings
-from burridge_knopoff.continuation.along_a import continue_attractors
+from burridge_knopoff.continuation.attractor_continuation import continue_attractors
 from burridge_knopoff.continuation.settings import RefinementSettings
 from tests.maps import LOGISTIC, TWO_WELLS
 
@@ -16,25 +16,27 @@ LINE = SearchSettings(
 )
 
 
-def where(found, branch):
+def where(continuation, branch):
     """Return the values of a at which a branch is known, and its attractors there."""
-    known = [
+    pairs = [
         (model.a, attractors[numbers.tolist().index(branch)])
-        for model, attractors, numbers in zip(found.models, found.attractors, found.branch, strict=True)
+        for model, attractors, numbers in zip(
+            continuation.models, continuation.attractors, continuation.branch, strict=True
+        )
         if branch in numbers
     ]
-    return np.array([a for a, _ in known]), [item for _, item in known]
+    return np.array([a for a, _ in pairs]), [item for _, item in pairs]
 
 
 def test_each_well_is_one_branch_that_ends_at_its_fold(maps):
     """The lower well exists only for μ < 2/√27, the upper one only for μ > −2/√27."""
     fold, refine = 2.0 / np.sqrt(27.0), RefinementSettings(2e-3)
     grid = np.linspace(-0.45, 0.45, 19).tolist()
-    found = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=refine)
-    assert {*np.concatenate(found.branch).tolist()} == {1, 2}
+    continuation = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=refine)
+    assert {*np.concatenate(continuation.branch).tolist()} == {1, 2}
     ranges = {}
     for branch in (1, 2):
-        a, items = where(found, branch)
+        a, items = where(continuation, branch)
         a = a - 1.0
         side = np.sign([item.motion.state().position[0] for item in items])
         assert np.ptp(side) == 0
@@ -49,8 +51,8 @@ def test_each_well_is_one_branch_that_ends_at_its_fold(maps):
 def test_fractions_are_those_of_the_basins(maps):
     """States are uniform, so the fraction of a well is the length of its side of the unstable fixed point."""
     grid = [-0.2, 0.0, 0.3]
-    found = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=RefinementSettings(1.0))
-    for mu, attractors, sample in zip(grid, found.attractors, found.samples, strict=True):
+    continuation = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=RefinementSettings(1.0))
+    for mu, attractors, sample in zip(grid, continuation.attractors, continuation.samples, strict=True):
         middle = np.sort(np.roots([-1.0, 0.0, 1.0, mu]).real)[1]
         for index, item in enumerate(attractors):
             share = (1.3 - middle) / 2.6 if item.motion.state().position[0] > 0.0 else (middle + 1.3) / 2.6
@@ -61,17 +63,17 @@ def test_fractions_are_those_of_the_basins(maps):
 def test_sweeps_show_the_hysteresis_of_two_folds(maps):
     """Swept upward, motion leaves the lower well beyond its fold; swept downward, it leaves the upper one."""
     grid = [-0.45, -0.3, 0.0, 0.3, 0.45]
-    found = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=RefinementSettings(1.0))
+    continuation = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=RefinementSettings(1.0))
 
     def swept(steps, following):
         index, x = 0, []
         for k in steps:
-            x.append(np.sign(found.attractors[k][index].motion.state().position[0]))
+            x.append(np.sign(continuation.attractors[k][index].motion.state().position[0]))
             index = following[k][index]
         return x
 
-    assert swept(range(5), found.upward) == [-1, -1, -1, -1, 1]
-    assert swept(range(4, -1, -1), found.downward) == [1, 1, 1, 1, -1]
+    assert swept(range(5), continuation.upward) == [-1, -1, -1, -1, 1]
+    assert swept(range(4, -1, -1), continuation.downward) == [1, 1, 1, 1, -1]
 
 
 @pytest.mark.parametrize(
@@ -80,10 +82,10 @@ def test_sweeps_show_the_hysteresis_of_two_folds(maps):
 def test_a_period_doubling_is_located_to_the_resolution(maps, grid, at, periods):
     """The logistic map doubles the period at 3 and at 1 + √6; the doubled orbit continues under the same number."""
     refine = RefinementSettings(0.01)
-    found = continue_attractors([LOGISTIC.at(r) for r in grid], LINE, refine=refine)
-    a, items = where(found, 1)
+    continuation = continue_attractors([LOGISTIC.at(r) for r in grid], LINE, refine=refine)
+    a, items = where(continuation, 1)
     period = np.array([item.motion.section_period for item in items])
-    assert {*np.concatenate(found.branch).tolist()} == {1}
+    assert {*np.concatenate(continuation.branch).tolist()} == {1}
     assert all(item.motion.kind == MotionKind.PERIODIC for item in items)
     assert (np.diff(period) >= 0).all()
     last, first = a[period == periods[0]].max(), a[period == periods[1]].min()
@@ -94,10 +96,10 @@ def test_a_period_doubling_is_located_to_the_resolution(maps, grid, at, periods)
 
 def test_results_do_not_depend_on_other_values(maps):
     """The attractors at a value of a do not depend on the other values."""
-    one = continue_attractors([TWO_WELLS.at(1.1)], WELLS, refine=RefinementSettings(1.0))
+    alone = continue_attractors([TWO_WELLS.at(1.1)], WELLS, refine=RefinementSettings(1.0))
     several = continue_attractors(
         [TWO_WELLS.at(1.0 + mu) for mu in (0.0, 0.1, 0.2)], WELLS, refine=RefinementSettings(1.0)
     )
-    both = one.attractors[0], several.attractors[1]
-    states = [sorted(item.motion.state().position[0] for item in found) for found in both]
+    both = alone.attractors[0], several.attractors[1]
+    states = [sorted(item.motion.state().position[0] for item in attractors) for attractors in both]
     assert states[0] == pytest.approx(states[1], abs=1e-9)

@@ -19,17 +19,17 @@ def values():
     """Return a function that returns the values of a inserted between two, with scripted attractors at each a."""
 
     def insert_values(attractors, low=0.0, high=1.0, resolution=0.1):
-        asked = []
+        calls = []
 
         class Scripted(Search):
             def labels(self, starts, check=True):
-                asked.append((self.model.a, sorted(start.position[1] for start in starts), self.trials, check))
+                calls.append((self.model.a, sorted(start.position[1] for start in starts), self.trials, check))
                 self.attractors = attractors(self.model.a)
 
         ends = [Scripted(Model(Chain(3), law_of("linearized", a)), attractors=attractors(a)) for a in (low, high)]
-        with parallel_map(1) as each:
-            (inner,) = refine_searches(ends, RefinementSettings(resolution), Matcher(1.0), each)
-        return [search.model.a for search in inner], asked
+        with parallel_map(1) as pool:
+            (inner,) = refine_searches(ends, RefinementSettings(resolution), Matcher(1.0), pool)
+        return [search.model.a for search in inner], calls
 
     return insert_values
 
@@ -41,9 +41,9 @@ def changing_at(change, before, later):
 
 def test_bisection_ends_at_the_resolution(values):
     change = changing_at(0.3, [at(STILL)], [at(STILL, section_period=2)])
-    found, asked = values(change)
-    assert found == BISECTED
-    assert {call[2:] for call in asked} == {(1, False)}
+    inserted, calls = values(change)
+    assert inserted == BISECTED
+    assert {call[2:] for call in calls} == {(1, False)}
     # No value is inserted into a step of the grid that is small enough, up to rounding.
     assert values(change, resolution=1.0)[0] == []
     assert values(change, low=0.2, high=0.2 + 0.1 * (1 + 1e-12))[0] == []
@@ -68,9 +68,9 @@ def test_windows_between_values_are_refined_on_both_sides(values):
 
 def test_only_changing_attractors_are_followed(values):
     """Unchanged attractors are not followed, and a seed that has reached one does not count as a change."""
-    found, asked = values(changing_at(0.3, [at(STILL), at(OTHER, partner=1)], [at(STILL)]))
-    assert found == BISECTED
-    for _, seeds, *_ in asked:
+    inserted, calls = values(changing_at(0.3, [at(STILL), at(OTHER, partner=1)], [at(STILL)]))
+    assert inserted == BISECTED
+    for _, seeds, *_ in calls:
         assert seeds == pytest.approx([OTHER], abs=1e-3)
 
 

@@ -19,9 +19,9 @@ def core_stub(module: str = "burridge_knopoff.kernel._core") -> str:
     with TemporaryDirectory() as folder:
         path = Path(folder, STUB.name)
         # Values, such as the width of a vector, may differ between machines.
-        made = ["nanobind.stubgen", "--quiet", "--exclude-values", "--module", module, "--output-file", str(path)]
+        stub = ["nanobind.stubgen", "--quiet", "--exclude-values", "--module", module, "--output-file", str(path)]
         styled = ["ruff", "format", "--isolated", "--quiet", "--line-length", "120", str(path)]
-        for command in (made, styled):
+        for command in (stub, styled):
             subprocess.run([sys.executable, "-m", *command], check=True)
         return HEAD + path.read_text()
 

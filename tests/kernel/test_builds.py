@@ -58,9 +58,9 @@ def test_every_kernel_of_an_unoptimized_wheel_gives_the_same_bits(installed, mon
     for folder, flags in vector_flags().items():
         needed = required_instructions(flags)
         if not missing_instructions(needed):
-            path, *found = output(needed, installed.python, "-I")
+            path, *lines = output(needed, installed.python, "-I")
             assert Path(path).parent.name == (folder or "kernel")
-            assert found == expected
+            assert lines == expected
 
 
 @pytest.mark.parametrize("lanes", ["2", "4", "8", "all", None, "3", ""])

@@ -128,10 +128,10 @@ def test_a_catalogue_does_not_depend_on_where_runs_are_divided():
 def test_groups_and_the_chain_as_a_whole_have_the_same_events():
     """They have the same events until chaos makes them diverge."""
     model = Model(Chain(12, coupling=5.0, pulling=1.0), law_of("carlson_langer", 1.0), 0.02)
-    one, other = (record_catalogue(model, at_rest(model), 60.0, groups)[0] for groups in (True, False))
-    assert len(one["time"]) >= 8
-    for name, values in one.items():
-        assert np.allclose(values[:8], other[name][:8], rtol=1e-7, atol=1e-9, equal_nan=True), name
+    grouped, ungrouped = (record_catalogue(model, at_rest(model), 60.0, groups)[0] for groups in (True, False))
+    assert len(grouped["time"]) >= 8
+    for name, values in grouped.items():
+        assert np.allclose(values[:8], ungrouped[name][:8], rtol=1e-7, atol=1e-9, equal_nan=True), name
 
 
 def test_connection_decides():

@@ -69,20 +69,20 @@ def case(model, monkeypatch):
     monkeypatch.setattr("burridge_knopoff.running.kernel_model.KernelModel", dict)
     *arrays, value, slope, linear, rate, steepest, v, symmetric, creep_speed = kernel_model(model).values()
     monkeypatch.undo()
-    stuck, one, many = starts(model)
+    stuck, single, many = starts(model)
     settings = [exponent_count(model).matrix().shape[1], COUNT, STEP]
     numbers = [value, slope, linear, rate, steepest, v, symmetric, creep_speed]
-    return settings, *arrays, numbers, EDGES, TIMES, *one, stuck, *many
+    return settings, *arrays, numbers, EDGES, TIMES, *single, stuck, *many
 
 
-def found_here(model):
+def kernel_rows(model):
     """Return the results of the installed kernel."""
     stuck, (position, velocity), many = starts(model)
     start = ChainState(position, np.where(stuck, 0.0, velocity), stuck)
 
     def runner_of(solver, catalogue):
-        made = {"observer": new_observer(model, EDGES, TIMES, TIMES), "exponents": exponent_count(model)}
-        runner = Runner(model, solver, step=STEP, keep_events=True, catalogue=catalogue, **made)
+        options = {"observer": new_observer(model, EDGES, TIMES, TIMES), "exponents": exponent_count(model)}
+        runner = Runner(model, solver, step=STEP, keep_events=True, catalogue=catalogue, **options)
         runner.begin(start)
         return runner
 
@@ -90,9 +90,9 @@ def found_here(model):
         yield [int(status)]
         yield from runner.kernel.values()[:2]
         yield from (runner.log.events.times(), runner.log.events.values())
-        found, events = runner.observer.results(), catalogue.take()
+        results, events = runner.observer.results(), catalogue.take()
         measured = "distance position velocity batch_integral crossing_time crossing highest_speed lowest_force"
-        yield from (found[name] for name in measured.split())
+        yield from (results[name] for name in measured.split())
         yield from (events[name] for name in ("time", "moment", "energy_released", "energy_damped"))
         if runner.step_key[1] == "series":
             yield runner.exponents.results()["growth"]
@@ -101,16 +101,16 @@ def found_here(model):
         return Catalogue(model.blocks, 0.0, False, MOST_NUMBERS)
 
     catalogue = new_catalogue()
-    one = runner_of("series", catalogue)
-    yield from rows(one, one.run(), catalogue)
+    runner_in_series = runner_of("series", catalogue)
+    yield from rows(runner_in_series, runner_in_series.run(), catalogue)
     several = [runner_of("series", None) for _ in range(4)]
     for runner, status in zip(several, run_together(several), strict=True):
         yield from rows(runner, status, new_catalogue())
     catalogue = new_catalogue()
     other = runner_of("rk4", catalogue)
     yield from rows(other, other.run(), catalogue)
-    found = new_ensemble(model).run(*many, np.zeros((COUNT, model.blocks), dtype=bool), TIMES.tolist())
-    yield from (found[name] for name in ("position", "velocity", "end"))
+    results = new_ensemble(model).run(*many, np.zeros((COUNT, model.blocks), dtype=bool), TIMES.tolist())
+    yield from (results[name] for name in ("position", "velocity", "end"))
 
 
 def rows_of(content):
@@ -127,14 +127,14 @@ def check(compile_with, run_with, folder, monkeypatch):
     command = [*compile_with, *COMPILER_FLAGS, f"-I{KERNEL}", str(SOURCE), "-o", str(program)]
     subprocess.run(command, check=True)
     cases = [np.ravel(row).astype(float) for model in CASES for row in case(model, monkeypatch)]
-    given = b"".join(np.append(len(row), row).tobytes() for row in cases)
-    done = subprocess.run([*run_with, program], input=given, stdout=subprocess.PIPE, check=True)
-    found = rows_of(done.stdout)
+    stdin = b"".join(np.append(len(row), row).tobytes() for row in cases)
+    done = subprocess.run([*run_with, program], input=stdin, stdout=subprocess.PIPE, check=True)
+    lines = rows_of(done.stdout)
     for model in CASES:
-        for name, expected in zip(NAMES, found_here(model), strict=True):
+        for name, expected in zip(NAMES, kernel_rows(model), strict=True):
             bits = np.ravel(expected).astype(float).tobytes()
-            assert next(found).tobytes() == bits, f"{name}: {model}"
-    assert next(found, None) is None
+            assert next(lines).tobytes() == bits, f"{name}: {model}"
+    assert next(lines, None) is None
 
 
 def test_the_program_that_reads_the_cases_compiles():
@@ -148,8 +148,8 @@ def test_the_program_that_reads_the_cases_compiles():
 @pytest.mark.parametrize("clang", setting("BK_CLANG").split(os.pathsep))
 def test_clang_makes_the_same_bits(clang, lanes, tmp_path, monkeypatch):
     # If the processor lacks instructions of this width, narrower ones are used.
-    own = [flag for flag in LEVELS.values() if not missing_instructions(required_instructions([flag]))]
-    flag = LEVELS[lanes] if LEVELS[lanes] in own else own[-1]
+    supported = [flag for flag in LEVELS.values() if not missing_instructions(required_instructions([flag]))]
+    flag = LEVELS[lanes] if LEVELS[lanes] in supported else supported[-1]
     check([clang, flag, f"-DBK_LANES={lanes}"], [], tmp_path, monkeypatch)
 
 

@@ -48,7 +48,7 @@ def dashed(form, generator, drag):
     """Return a chain with dashpots of about this damping ratio between its blocks and to the driver."""
     blocks = {"row": 5, "ring": 6, "grid": 6}[form]
     coupling, share = generator.uniform(1.0, 5.0), generator.uniform(0.3, 1.0)
-    given = {"ends": "ring"} if form == "ring" else {"grid": (3, 2)} if form == "grid" else {}
+    options = {"ends": "ring"} if form == "ring" else {"grid": (3, 2)} if form == "grid" else {}
     return Chain(
         blocks,
         coupling=coupling,
@@ -56,7 +56,7 @@ def dashed(form, generator, drag):
         damping=drag * share * 2.0 * np.sqrt(coupling),
         pulling_damping=tuple(drag * generator.uniform(0.0, 2.0, blocks)),
         mass=tuple(generator.uniform(0.5, 2.0, blocks)),
-        **given,
+        **options,
     )
 
 
@@ -185,8 +185,8 @@ def test_creep_removes_perturbations():
     chain = Chain(4, coupling=tuple(coupling), pulling=1.0, damping=tuple(damping), mass=tuple(mass))
     model = Model(chain, law_of("carlson_langer", 1.0, {"sigma": 0.05}), 1.0)
     start = resting(model, generator.uniform(-0.6, -0.5, 4))
-    found = event_exponents(model, start, 40.0, begin=5.0, count=4)
-    assert 1 < np.isinf(found.exponent).sum() < 4
+    spectrum = event_exponents(model, start, 40.0, begin=5.0, count=4)
+    assert 1 < np.isinf(spectrum.exponent).sum() < 4
 
 
 @GROUPS
@@ -210,8 +210,8 @@ def test_a_driver_at_rest_pulls_by_no_dashpot(v):
     state = InitialState("own", (-0.9,), (v,))
     assert model.begin(state, "tested").stuck.tolist() == [v < 0.1]
     start = model.begin(state, "tested", "quasistatic")
-    found = record_events(model, start, 3.0 / v, loading="quasistatic")
-    assert found.time[0] * v == pytest.approx(0.1, rel=1e-12)
+    events = record_events(model, start, 3.0 / v, loading="quasistatic")
+    assert events.time[0] * v == pytest.approx(0.1, rel=1e-12)
 
 
 def overdamped(blocks):
@@ -245,8 +245,8 @@ def test_consecutive_runs_have_the_catalogue_of_the_whole_run(blocks):
     assert creep > 0
     assert len(whole.time) > 2
     for name in ("time", "slip_time", "duration", "moment", "interval"):
-        found = np.concatenate([getattr(part, name) for part in parts])
-        assert np.array_equal(np.sort(found), np.sort(getattr(whole, name)), equal_nan=True), name
+        values = np.concatenate([getattr(part, name) for part in parts])
+        assert np.array_equal(np.sort(values), np.sort(getattr(whole, name)), equal_nan=True), name
     assert np.array_equal(at.position, whole.final.position)
 
 

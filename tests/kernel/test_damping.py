@@ -36,9 +36,9 @@ def damped(draw):
     strength = generator.uniform(0.5, 2.0, len(pairs) if uneven else 1)
     dashpot = 10.0 ** draw(st.floats(-2.0, 0.5)) * generator.uniform(0.0, 1.0, len(pairs) if uneven else 1)
     to_driver = draw(st.sampled_from([0.0, 0.3])) * generator.uniform(0.0, 1.0, blocks)
-    given = {"coupling": strength, "damping": dashpot} if uneven else {}
-    given = given or {"coupling": strength[0], "damping": dashpot[0], "grid": (3, 2)}
-    chain = Chain(blocks, pulling=1.0, pulling_damping=to_driver, ends="ring" if form == "ring" else "open", **given)
+    options = {"coupling": strength, "damping": dashpot} if uneven else {}
+    options = options or {"coupling": strength[0], "damping": dashpot[0], "grid": (3, 2)}
+    chain = Chain(blocks, pulling=1.0, pulling_damping=to_driver, ends="ring" if form == "ring" else "open", **options)
     stiffness, damping = np.eye(blocks), np.diag(to_driver)
     for (i, j), k, c in zip(pairs, np.resize(strength, len(pairs)), np.resize(dashpot, len(pairs)), strict=True):
         for matrix, number in ((stiffness, k), (damping, c)):
@@ -175,8 +175,8 @@ def test_energies_of_fixed_steps_converge():
     exact = record_events(model, start, 30.0)
     errors = []
     for step in (1e-3, 1e-4):
-        found = record_events(model, start, 30.0, solver="rk4", step=step)
-        errors.append(np.abs(found.energy_damped[:3] - exact.energy_damped[:3]).max())
+        events = record_events(model, start, 30.0, solver="rk4", step=step)
+        errors.append(np.abs(events.energy_damped[:3] - exact.energy_damped[:3]).max())
     assert errors[1] < 0.5 * errors[0]
     assert errors[1] < 1e-3 * exact.energy_damped[:3].max()
 
@@ -191,9 +191,9 @@ def test_quasistatic_loading_is_the_limit_of_a_slow_driver(groups):
         model = Model(chain, law_of("carlson_langer", 1.0), v)
         position = start.position + Model(chain, model.law, 0.01).sliding_offset - model.sliding_offset
         again = ChainState(position, start.velocity, start.stuck)
-        found = record_catalogue(model, again, 0.5 / v, groups, loading=loading)[0]
+        catalogue = record_catalogue(model, again, 0.5 / v, groups, loading=loading)[0]
         names = ("duration", "moment", "peak_velocity", "stress_drop", "energy_released", "energy_damped")
-        columns.append(np.array([found["time"] * v, *(found[name] for name in names)])[:, :6])
+        columns.append(np.array([catalogue["time"] * v, *(catalogue[name] for name in names)])[:, :6])
     assert columns[0].shape == (7, 6)
     assert (columns[0][-1] > 0.0).all()
     assert np.allclose(*columns, rtol=3e-3, atol=1e-5)
@@ -239,9 +239,9 @@ def test_growth_of_uniform_sliding(law, ends):
     chain = Chain(5, damping=0.02, pulling_damping=0.01, mass=(1.0, 2.0, 1.0, 0.5, 1.0), ends=ends)
     model = Model(chain, law_of(law, 0.1))
     start = ChainState(np.zeros(5), np.full(5, model.v), np.zeros(5, dtype=bool))
-    found = np.log(np.linalg.eigvals(carry(model, start, 0.5, directions(start))[0].perturbations)) / 0.5
+    rates = np.log(np.linalg.eigvals(carry(model, start, 0.5, directions(start))[0].perturbations)) / 0.5
     expected = eigenvalues(model)
-    assert np.allclose(np.sort_complex(found), np.sort_complex(expected), rtol=0.0, atol=1e-9)
+    assert np.allclose(np.sort_complex(rates), np.sort_complex(expected), rtol=0.0, atol=1e-9)
 
 
 def test_damping_scales_with_springs_and_masses():
@@ -249,8 +249,8 @@ def test_damping_scales_with_springs_and_masses():
     chain = Chain(3, damping=0.3, pulling_damping=(0.1, 0.0, 0.2))
     other = Chain(3, 2.0, (2.0, 4.0, 2.0), mass=2.0, threshold=2.0, damping=0.6, pulling_damping=(0.2, 0.0, 0.4))
     runs = [
-        simulate(Model(one, law_of("nonlinear", 0.2)), initial="plus", transient=0, window=60, lyapunov_exponents=0)
-        for one in (chain, other)
+        simulate(Model(form, law_of("nonlinear", 0.2)), initial="plus", transient=0, window=60, lyapunov_exponents=0)
+        for form in (chain, other)
     ]
     assert runs[0].event_count > 10
     assert runs[0].mean_distance == pytest.approx(runs[1].mean_distance, rel=1e-12)

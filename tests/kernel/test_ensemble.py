@@ -24,24 +24,24 @@ def states(model, count, seed=1):
     return position, generator.uniform(least, 0.2, shape), generator.random(shape) < 0.2
 
 
-def events_of(found, k):
-    columns = (found[f"event_{name}"][k, : found["event_count"][k]].tolist() for name in ("time", "block", "kind"))
+def events_of(results, k):
+    columns = (results[f"event_{name}"][k, : results["event_count"][k]].tolist() for name in ("time", "block", "kind"))
     return list(zip(*columns, strict=True))
 
 
 def check_against_scalar(model, ensemble, count, end, start=None, tolerance=0.0):
     """Compare trajectories, random ones unless they are given, with single runs; return the number of events."""
     start = states(model, count) if start is None else start
-    found = ensemble.run(*start, [end], events=3000)
+    results = ensemble.run(*start, [end], events=3000)
     for k, (position, velocity, stuck) in enumerate(zip(*start, strict=True)):
         runner = Runner(model, keep_events=True, groups=False)
         runner.begin(ChainState(position, np.where(stuck, 0.0, velocity), stuck))
-        assert found["status"][k] == runner.run(end)
+        assert results["status"][k] == runner.run(end)
         time, block, kind = runner.events()
-        check_events(events_of(found, k), list(zip(time, block + 1, kind, strict=True)), tolerance)
+        check_events(events_of(results, k), list(zip(time, block + 1, kind, strict=True)), tolerance)
         for name, expected in zip(("position", "velocity", "slip"), runner.kernel.values(), strict=True):
-            assert np.abs(found[name][k, 0] - expected).max() <= tolerance
-    return found["event_count"].sum()
+            assert np.abs(results[name][k, 0] - expected).max() <= tolerance
+    return results["event_count"].sum()
 
 
 @pytest.mark.parametrize("contact", CONTACTS)
@@ -87,11 +87,11 @@ def test_unequal_springs_and_thresholds_and_a_drop_at_the_start(drop, ends, seed
     pulling, threshold = generator.uniform(0.5, 1.5, 4), generator.uniform(0.8, 1.2, 4)
     model = Model(Chain(4, coupling, pulling, threshold, ends), FormulaLaw(0.5, "(1 - drop)*exp(-a*u)", drop=drop))
     position, velocity = generator.uniform(-0.4, 0.4, (2, 4)), generator.uniform(0.05, 0.2, (2, 4))
-    found = new_ensemble(model).run(position, velocity, np.zeros((2, 4)), [12.0], events=100)
+    results = new_ensemble(model).run(position, velocity, np.zeros((2, 4)), [12.0], events=100)
     for k in range(2):
         expected, _ = model_events(model, ChainState(position[k], velocity[k], np.zeros(4, dtype=bool)), 12.0)
         assert len(expected) > 8
-        check_events(events_of(found, k), expected, 1e-8)
+        check_events(events_of(results, k), expected, 1e-8)
 
 
 def members(result, order=slice(None)):
@@ -138,9 +138,12 @@ def own_images(start):
 def test_mirror_images_move_as_mirror_images(model):
     """This holds to the bit, and a state that is its own image remains so."""
     start, ensemble = states(model, 30), new_ensemble(model)
-    own = own_images(start)
-    for one, other, times in ((start, [part[:, ::-1] for part in start], [3.0, 25.0]), (own, own, [25.0, 200.0])):
-        straight, mirrored = ensemble.run(*one, times), ensemble.run(*other, times)
+    symmetric = own_images(start)
+    for initial, images, times in (
+        (start, [part[:, ::-1] for part in start], [3.0, 25.0]),
+        (symmetric, symmetric, [25.0, 200.0]),
+    ):
+        straight, mirrored = ensemble.run(*initial, times), ensemble.run(*images, times)
         for key in ("position", "velocity", "slip"):
             assert (straight[key] == mirrored[key][:, :, ::-1]).all()
 
@@ -175,8 +178,8 @@ def test_grazing_touches(law, initial, before, after):
     for a in (before, after):
         model = Model(Chain(3), law_of(law, a))
         start = model.begin(PAPER_STATES[initial])
-        found = new_ensemble(model).run(start.position[None], start.velocity[None], start.stuck[None], [200.0])
-        counts.append(int(found["event_count"][0]))
+        results = new_ensemble(model).run(start.position[None], start.velocity[None], start.stuck[None], [200.0])
+        counts.append(int(results["event_count"][0]))
         assert counts[-1] == len(carry(model, start, 200.0)[1])
     assert counts[1] >= counts[0] + 2
 
@@ -187,17 +190,17 @@ def test_threads_share_the_work():
     whole = new_ensemble(model).run(*start, [50.0])
     with ThreadPoolExecutor(4) as pool:
         parts = pool.map(lambda k: new_ensemble(model).run(*(values[k::4] for values in start), [50.0]), range(4))
-        for k, found in enumerate(parts):
-            assert members(found) == members(whole, slice(k, None, 4))
+        for k, part in enumerate(parts):
+            assert members(part) == members(whole, slice(k, None, 4))
 
 
 def test_a_trajectory_without_bound_ends_alone():
     """A fast block under a law that accelerates it without limit ends as diverged; another trajectory continues."""
     model = Model(Chain(3), law_of("linearized", 1.9), 0.1, "symmetric")
     position, velocity = np.array([[5.0, -5.0, 5.0], [0.0, 0.0, 0.0]]), np.array([[3.0, -3.0, 3.0], [0.1, 0.1, 0.1]])
-    found = new_ensemble(model).run(position, velocity, np.zeros((2, 3)), [1.0, 300.0])
+    results = new_ensemble(model).run(position, velocity, np.zeros((2, 3)), [1.0, 300.0])
     alone = new_ensemble(model).run(position[1:], velocity[1:], np.zeros((1, 3)), [1.0, 300.0])
-    assert found["status"][0] == 3
-    assert found["end"][0] < 300.0
-    assert np.isnan(found["position"][0, 1]).all()
-    assert members(found, slice(1, 2)) == members(alone)
+    assert results["status"][0] == 3
+    assert results["end"][0] < 300.0
+    assert np.isnan(results["position"][0, 1]).all()
+    assert members(results, slice(1, 2)) == members(alone)

@@ -43,8 +43,8 @@ def check(law, initial, a, tolerance=1e-12, end=200.0, **conventions):
     state = PAPER_STATES[initial]
     expected = reference_events(law, a, state.position, state.velocity, end=end, **conventions)
     for solver in SOLVERS[law]:
-        found = simulate(law, a, initial, solver=solver, transient=0.0, window=end, events="all", **conventions)
-        check_events(listed(found), expected, tolerance)
+        run = simulate(law, a, initial, solver=solver, transient=0.0, window=end, events="all", **conventions)
+        check_events(listed(run), expected, tolerance)
     return expected
 
 
@@ -55,11 +55,11 @@ def test_event_times_of_the_reference_setting(law, initial, a, tolerance):
 
 @pytest.mark.parametrize(("law", "initial", "before", "after"), GRAZES)
 def test_grazing_touches(law, initial, before, after):
-    missed, found = (check(law, initial, a) for a in (before, after))
-    assert len(found) >= len(missed) + 2
-    times = [[time for time, moved, _ in found if moved == block] for block in (1, 2, 3)]
+    missed, touched = (check(law, initial, a) for a in (before, after))
+    assert len(touched) >= len(missed) + 2
+    times = [[time for time, moved, _ in touched if moved == block] for block in (1, 2, 3)]
     # Every block begins with a stop.
-    assert min(min(np.diff(own)[::2]) for own in times) < 0.002
+    assert min(min(np.diff(times_of_block)[::2]) for times_of_block in times) < 0.002
 
 
 @pytest.mark.parametrize("law", SOLVERS)
@@ -105,9 +105,9 @@ def test_random_chains_against_scipy(chain):
     state = InitialState("drawn", tuple(position), tuple(velocity))
     for solver in SOLVERS[law]:
         settings = {"transient": 0.0, "window": end, "events": "all", "trajectory": 0.0, **options}
-        found = simulate(law, a, state, solver=solver, **settings)
-        assert found.status == "completed"
-        assume(not (np.diff(found.event_time) < 2e-3).any())
-        check_events(listed(found), expected, 1e-6)
-        assert np.allclose(found.position[-1], x, atol=1e-7)
-        assert np.allclose(found.velocity[-1], w, atol=1e-7)
+        run = simulate(law, a, state, solver=solver, **settings)
+        assert run.status == "completed"
+        assume(not (np.diff(run.event_time) < 2e-3).any())
+        check_events(listed(run), expected, 1e-6)
+        assert np.allclose(run.position[-1], x, atol=1e-7)
+        assert np.allclose(run.velocity[-1], w, atol=1e-7)

@@ -84,8 +84,8 @@ def test_transverse_exponent_of_synchrony(law, a):
     run = simulate(law, a, SYMMETRIC, window=20000.0, transient=2000.0, events="none")
     assert run.distance.max() == 0.0
     # Two exponents are known, in the order of their size: that of the flow itself, 0, and the transverse one.
-    for known in (0.0, transverse):
-        assert np.abs(run.lyapunov_exponent - known).min() < 2e-4
+    for exponent in (0.0, transverse):
+        assert np.abs(run.lyapunov_exponent - exponent).min() < 2e-4
     assert (transverse > 0.0) == (run.lyapunov_exponent[0] > 1e-3)
 
 
@@ -112,14 +112,14 @@ def test_sum_of_all_finite_exponents_is_the_determinant(law, blocks, a, contact)
     first = states[chosen]
     duration = 0.05 * max(k - chosen for k, state in enumerate(states) if (state.stuck == first.stuck).all())
     assert duration > 10.0
-    found = growth_from(model, first, duration, 2 * blocks)
-    kept = np.concatenate([np.ones(blocks, dtype=bool), ~first.stuck])
-    runner, _ = carry(model, first, duration, np.diag(kept.astype(float)))
-    sign, logarithm = np.linalg.slogdet(runner.perturbations[np.ix_(kept, kept)])
+    growth = growth_from(model, first, duration, 2 * blocks)
+    mask = np.concatenate([np.ones(blocks, dtype=bool), ~first.stuck])
+    runner, _ = carry(model, first, duration, np.diag(mask.astype(float)))
+    sign, logarithm = np.linalg.slogdet(runner.perturbations[np.ix_(mask, mask)])
     assert sign != 0
-    assert found["lost"] == most
-    assert np.isneginf(found["growth"][0]).sum() == most
-    assert found["growth"][0, : 2 * blocks - most].sum() == pytest.approx(logarithm, abs=1e-4)
+    assert growth["lost"] == most
+    assert np.isneginf(growth["growth"][0]).sum() == most
+    assert growth["growth"][0, : 2 * blocks - most].sum() == pytest.approx(logarithm, abs=1e-4)
 
 
 @pytest.mark.parametrize(("law", "initial", "a"), [("linearized", "minus", 0.08), ("nonlinear", "plus", 0.08)])
@@ -266,6 +266,6 @@ def test_parts_of_a_chain_lose_perturbations_one_after_the_other():
     runner, events = carry(model, start, 1.0, np.diag([1.0, 1.0, 1.0, 1.0, 0.0, 1.0]))
     assert [event[1:] for event in events] == [(1, 0), (1, 1), (3, 0)]
     assert (np.linalg.svd(runner.perturbations, compute_uv=False) > 1e-12).sum() == 3
-    found = growth_from(model, start, 1.0, 6)
-    assert found["lost"] == 3
-    assert np.isneginf(found["growth"][0]).tolist() == [False] * 3 + [True] * 3
+    growth = growth_from(model, start, 1.0, 6)
+    assert growth["lost"] == 3
+    assert np.isneginf(growth["growth"][0]).tolist() == [False] * 3 + [True] * 3

@@ -70,10 +70,10 @@ def test_one_block_has_no_distance_and_two_exponents(law):
 def test_events_against_scipy_and_in_lanes(law, chain, contact):
     model = Model(chain, law_of(law, 0.2), contact=contact)
     start = model.begin(wave(chain.blocks, 0.3), "tested")
-    _, found = carry(model, start, 25.0)
+    _, events = carry(model, start, 25.0)
     expected, _ = model_events(model, start, 25.0)
-    assert len(found) > 4
-    check_events(found, expected, 1e-8)
+    assert len(events) > 4
+    check_events(events, expected, 1e-8)
     assert check_against_scalar(model, new_ensemble(model), 10, 12.0) > 10
 
 

@@ -48,22 +48,22 @@ def test_events_are_those_of_the_chain_as_a_whole(blocks, law, contact, ends, co
     start = at_rest(model, seed)
     # Chaos sets in with the first slips that reach far.
     end = 0.6 / v + 2.0
-    (one, many), (other, whole) = (events(model, start, end, groups) for groups in (True, False))
-    assert one.kernel.local
-    assert not other.kernel.local
+    (grouped, many), (single, whole) = (events(model, start, end, groups) for groups in (True, False))
+    assert grouped.kernel.local
+    assert not single.kernel.local
     count = min(len(many), len(whole), 12)
     check_events(many[:count], whole[:count], 1e-9 / v)
     if len(many) == len(whole) <= 12:
-        assert np.allclose(one.state().vector(), other.state().vector(), rtol=0.0, atol=1e-8)
+        assert np.allclose(grouped.state().vector(), single.state().vector(), rtol=0.0, atol=1e-8)
 
 
 def test_a_mirrored_chain_moves_as_its_mirror_image():
     model = Model(Chain(60, coupling=30.0, pulling=1.0), law_of("nonlinear", 3.0), 0.01)
     start = at_rest(model, 3)
-    one, other = (events(model, state, 80.0, True)[1] for state in (start, start.mirrored()))
-    assert len(one) > 300
-    mirrored = sorted((time, 61 - block, kind) for time, block, kind in other)
-    assert sorted(one) == mirrored
+    events_straight, events_mirrored = (events(model, state, 80.0, True)[1] for state in (start, start.mirrored()))
+    assert len(events_straight) > 300
+    mirrored = sorted((time, 61 - block, kind) for time, block, kind in events_mirrored)
+    assert sorted(events_straight) == mirrored
 
 
 @pytest.mark.parametrize("section", [SUM, Section("block", 17)])
@@ -71,18 +71,18 @@ def test_observables_are_those_of_the_chain_as_a_whole(section):
     """⟨J⟩, samples, section crossings, states and extremes, in a window that begins during the motion."""
     model = Model(Chain(40, coupling=4.0, pulling=1.0), law_of("nonlinear", 0.2), 0.1)
     start = at_rest(model, 5)
-    found = []
+    results = []
     for groups in (True, False):
         edges, times = np.linspace(8.0, 24.0, 5), np.linspace(0.0, 24.0, 97)
         observer = new_observer(model, edges, times, times[60:], section=section)
         runner = Runner(model, observer=observer, groups=groups)
         runner.begin(start)
         assert runner.run() == Status.COMPLETED
-        found.append(observer.results())
-    for name, values in found[0].items():
-        assert np.shape(values) == np.shape(found[1][name]), name
-        assert np.allclose(values, found[1][name], rtol=0.0, atol=1e-7), name
-    assert len(found[0]["crossing_time"]) >= 1
+        results.append(observer.results())
+    for name, values in results[0].items():
+        assert np.shape(values) == np.shape(results[1][name]), name
+        assert np.allclose(values, results[1][name], rtol=0.0, atol=1e-7), name
+    assert len(results[0]["crossing_time"]) >= 1
 
 
 def test_a_continued_run_has_the_events_of_the_whole_run_to_the_bit():

@@ -39,7 +39,7 @@ def batches(draw):
         # Blocks that move identically except for rounding.
         if generator.random() < 0.4:
             position, velocity = position + position[::-1], velocity + velocity[::-1]
-        own = Settings(
+        run_settings = Settings(
             transient=float(generator.choice([0.0, 30.0, 100.0])),
             window=float(generator.choice([50.0, 150.0])),
             batches=int(generator.integers(2, 6)),
@@ -49,7 +49,7 @@ def batches(draw):
             section=SUM if generator.random() < 0.5 else Section("block", int(generator.integers(1, blocks + 1))),
             lyapunov_exponents=exponents,
         )
-        members.append((model, InitialState("drawn", tuple(position), tuple(velocity)), own))
+        members.append((model, InitialState("drawn", tuple(position), tuple(velocity)), run_settings))
     return members
 
 
@@ -65,14 +65,14 @@ def contents(trajectory):
 @given(batches())
 def test_each_run_equals_the_run_alone(members):
     alone = [run(*member) for member in members]
-    made = [prepare(*member) for member in members]
-    ends = run_together([one.runner for one in made])
-    for first, one, end in zip(alone, made, ends, strict=True):
-        together = one.result(one.runner.status_of(end))
+    prepared = [prepare(*member) for member in members]
+    ends = run_together([item.runner for item in prepared])
+    for first, item, end in zip(alone, prepared, ends, strict=True):
+        together = item.result(item.runner.status_of(end))
         assert contents(first) == contents(together)
         # The marks from which both continue are equal as well.
         longer = Settings(transient=0.0, window=20.0, lyapunov_exponents=0)
-        assert contents(run(one.model, first.final, longer)) == contents(run(one.model, together.final, longer))
+        assert contents(run(item.model, first.final, longer)) == contents(run(item.model, together.final, longer))
 
 
 def test_runs_of_all_kinds_at_once():
@@ -86,11 +86,13 @@ def test_runs_of_all_kinds_at_once():
                 if solver == "map" and not model.has_closed_form:
                     continue
                 for exponents in (0, 2) if solver != "rk4" else (0,):
-                    own = Settings(solver=solver, step=0.01, transient=0.0, window=20.0, lyapunov_exponents=exponents)
-                    members += 2 * [(model, state, own)]
-    made = [prepare(*member) for member in members]
-    for member, one, end in zip(members, made, run_together([one.runner for one in made]), strict=True):
-        assert contents(run(*member)) == contents(one.result(one.runner.status_of(end)))
+                    options = Settings(
+                        solver=solver, step=0.01, transient=0.0, window=20.0, lyapunov_exponents=exponents
+                    )
+                    members += 2 * [(model, state, options)]
+    prepared = [prepare(*member) for member in members]
+    for member, item, end in zip(members, prepared, run_together([item.runner for item in prepared]), strict=True):
+        assert contents(run(*member)) == contents(item.result(item.runner.status_of(end)))
 
 
 def test_runs_halt_at_stops_and_continue():
@@ -98,21 +100,21 @@ def test_runs_halt_at_stops_and_continue():
 
     def runners():
         for k in range(2 * LANES + 1):
-            one = Runner(model)
-            one.begin(model.begin(InitialState("drawn", (-1.0, -0.9 + 0.01 * k, -1.0), (0.1, 0.12, 0.1))))
-            yield one
+            runner = Runner(model)
+            runner.begin(model.begin(InitialState("drawn", (-1.0, -0.9 + 0.01 * k, -1.0), (0.1, 0.12, 0.1))))
+            yield runner
 
     alone, together = list(runners()), list(runners())
     for _ in range(5):
-        for one in alone:
-            assert one.run(1e3, halting_block=1) == Status.HALTED
-        for one in together:
-            one.kernel.end, one.kernel.halting_block = 1e3, 1
-        assert run_in_lockstep([one.kernel for one in together]) == [Status.HALTED] * len(together)
-        for one, other in zip(alone, together, strict=True):
-            assert one.clock == other.clock
-            assert (one.state().vector() == other.state().vector()).all()
-            assert other.state().stuck[1]
+        for runner in alone:
+            assert runner.run(1e3, halting_block=1) == Status.HALTED
+        for runner in together:
+            runner.kernel.end, runner.kernel.halting_block = 1e3, 1
+        assert run_in_lockstep([runner.kernel for runner in together]) == [Status.HALTED] * len(together)
+        for runner, partner in zip(alone, together, strict=True):
+            assert runner.clock == partner.clock
+            assert (runner.state().vector() == partner.state().vector()).all()
+            assert partner.state().stuck[1]
 
 
 def test_runs_end_as_they_do_alone():
@@ -121,13 +123,13 @@ def test_runs_end_as_they_do_alone():
     state = InitialState("drawn", (0.3, -0.4), (0.1, 0.0))
     diverging = Model(Chain(2, 0.1, 0.1), law, 1.0, symmetric), InitialState("drawn", (90.0, -50.0), (0.0, 0.0))
     ordinary = Model(Chain(2), law_of("linearized", 0.1), 1.0, symmetric), state
-    own = Settings(transient=0.0, window=200.0, lyapunov_exponents=1)
-    members = [(*(diverging if k % 3 == 0 else ordinary), own) for k in range(2 * LANES)]
+    options = Settings(transient=0.0, window=200.0, lyapunov_exponents=1)
+    members = [(*(diverging if k % 3 == 0 else ordinary), options) for k in range(2 * LANES)]
     alone = [run(*member) for member in members]
-    assert {one.status for one in alone} == {"completed", "diverged"}
-    made = [prepare(*member) for member in members]
-    for one, other, end in zip(alone, made, run_together([one.runner for one in made]), strict=True):
-        assert contents(one) == contents(other.result(other.runner.status_of(end)))
+    assert {single.status for single in alone} == {"completed", "diverged"}
+    prepared = [prepare(*member) for member in members]
+    for single, other, end in zip(alone, prepared, run_together([single.runner for single in prepared]), strict=True):
+        assert contents(single) == contents(other.result(other.runner.status_of(end)))
 
 
 @pytest.mark.parametrize("law", ["linearized", "nonlinear"])
@@ -136,28 +138,28 @@ def test_events_against_scipy(law):
     runners, starts = [], []
     for _ in range(LANES + 2):
         start = model.begin(InitialState("drawn", tuple(generator.uniform(-1.2, -0.4, 3)), (0.1, 0.05, 0.12)))
-        one = Runner(model, keep_events=True)
-        one.begin(start)
-        one.kernel.end = 15.0
-        runners.append(one)
+        runner = Runner(model, keep_events=True)
+        runner.begin(start)
+        runner.kernel.end = 15.0
+        runners.append(runner)
         starts.append(start)
-    assert run_in_lockstep([one.kernel for one in runners]) == [Status.COMPLETED] * len(runners)
-    for one, start in zip(runners, starts, strict=True):
-        time, block, kind = one.events()
+    assert run_in_lockstep([runner.kernel for runner in runners]) == [Status.COMPLETED] * len(runners)
+    for runner, start in zip(runners, starts, strict=True):
+        time, block, kind = runner.events()
         expected, _ = model_events(model, start, 15.0)
         assert len(expected) == len(time) > 5
-        for (when, which, how), *found in zip(expected, time, block + 1, kind, strict=True):
-            assert found[1:] == [which, how]
-            assert abs(found[0] - when) < 1e-8
+        for (when, which, how), *event in zip(expected, time, block + 1, kind, strict=True):
+            assert event[1:] == [which, how]
+            assert abs(event[0] - when) < 1e-8
 
 
 def test_ctrl_c_ends_them():
     model = Model(Chain(3), law_of("nonlinear", 0.08))
     runners = [Runner(model) for _ in range(2 * LANES)]
-    for one in runners:
-        one.begin(model.begin(InitialState("drawn", (-1.0, -0.9, -1.0), (0.1, 0.12, 0.1))))
-        one.kernel.end = 1e9
+    for runner in runners:
+        runner.begin(model.begin(InitialState("drawn", (-1.0, -0.9, -1.0), (0.1, 0.12, 0.1))))
+        runner.kernel.end = 1e9
     timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
     with pytest.raises(KeyboardInterrupt):
-        run_in_lockstep([one.kernel for one in runners])
+        run_in_lockstep([runner.kernel for runner in runners])

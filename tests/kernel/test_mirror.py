@@ -26,8 +26,8 @@ def states_of(engine, model, position, velocity, duration, start="moving"):
     if engine == "ensemble":
         at = model.begin(InitialState("drawn", tuple(position), tuple(velocity)), start)
         times = np.linspace(0.0, duration, TIMES + 1)[1:]
-        found = new_ensemble(model).run(at.position[None], at.velocity[None], at.stuck[None], times)
-        return found["position"][0] + model.sliding_offset, found["velocity"][0], found["event_count"][0]
+        results = new_ensemble(model).run(at.position[None], at.velocity[None], at.stuck[None], times)
+        return results["position"][0] + model.sliding_offset, results["velocity"][0], results["event_count"][0]
     whole = {"transient": 0.0, "window": duration, "sampling": duration, "trajectory": duration}
     run = simulate(
         model,
@@ -159,5 +159,5 @@ def test_grids_from_left_to_right(grid, engine):
     model = Model(Chain(grid=grid, coupling=3.0, pulling=1.0), law_of("carlson_langer", 3.0), v=0.1)
     x, u, count = states_of(engine, model, position.ravel(), np.zeros(columns * rows), 60.0, "tested")
     assert count > 50
-    found = np.reshape([x, u], (2, TIMES, rows, columns))
-    assert (found == found[..., ::-1]).all()
+    fields = np.reshape([x, u], (2, TIMES, rows, columns))
+    assert (fields == fields[..., ::-1]).all()

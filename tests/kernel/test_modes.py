@@ -21,9 +21,9 @@ def test_events_of_uniform_chains(options, blocks, tolerance):
     model = Model(Chain(blocks, **options), law_of("linearized", 0.2))
     assert model.has_closed_form
     start = model.begin(wave(blocks, 0.25))
-    one, other = (carry(model, start, 30.0, solver=solver)[1] for solver in SOLVERS)
-    assert len(one) > 8
-    check_events(one, other, tolerance)
+    first, second = (carry(model, start, 30.0, solver=solver)[1] for solver in SOLVERS)
+    assert len(first) > 8
+    check_events(first, second, tolerance)
 
 
 @pytest.mark.parametrize("initial", ["minus", "plus"])
@@ -36,18 +36,20 @@ def test_mean_distance_outside_chaos(initial):
     shifted = InitialState("shifted", (state.position[0] + 1e-12, *state.position[1:]), state.velocity)
     compared = 0
     for a in np.arange(0.0, 0.3001, 0.02):
-        one, other = (simulate("linearized", a, initial, solver=solver, events="none") for solver in SOLVERS)
-        if abs(simulate("linearized", a, shifted, events="none").mean_distance - one.mean_distance) > 1e-9:
+        first, second = (simulate("linearized", a, initial, solver=solver, events="none") for solver in SOLVERS)
+        if abs(simulate("linearized", a, shifted, events="none").mean_distance - first.mean_distance) > 1e-9:
             continue
         compared += 1
-        assert one.mean_distance == pytest.approx(other.mean_distance, rel=0, abs=1e-11), a
-        assert one.mean_distance <= 1e-3 or len(one.crossing_time) == len(other.crossing_time)
+        assert first.mean_distance == pytest.approx(second.mean_distance, rel=0, abs=1e-11), a
+        assert first.mean_distance <= 1e-3 or len(first.crossing_time) == len(second.crossing_time)
     assert compared >= 7
 
 
 @pytest.mark.parametrize(("initial", "a"), [("minus", 0.08), ("plus", 0.08), ("plus", 0.3)])
 def test_exponents(initial, a):
-    runs = [simulate("linearized", a, initial, solver=one, events="none", lyapunov_exponents=4) for one in SOLVERS]
+    runs = [
+        simulate("linearized", a, initial, solver=solver, events="none", lyapunov_exponents=4) for solver in SOLVERS
+    ]
     assert np.allclose(*(run.lyapunov_exponent for run in runs), rtol=0.0, atol=1e-8)
 
 
@@ -55,10 +57,10 @@ def test_exponents(initial, a):
 def test_perturbations(contact):
     model = Model(Chain(3), law_of("linearized", 0.12), contact=contact)
     start = model.begin(PAPER_STATES["plus"])
-    (one, events), (other, _) = (carry(model, start, 60.0, directions(start), solver) for solver in SOLVERS)
+    (first, events), (second, _) = (carry(model, start, 60.0, directions(start), solver) for solver in SOLVERS)
     assert len(events) > 40
-    scale = np.abs(one.perturbations).max()
-    assert np.allclose(one.perturbations, other.perturbations, rtol=0.0, atol=1e-10 * scale)
+    scale = np.abs(first.perturbations).max()
+    assert np.allclose(first.perturbations, second.perturbations, rtol=0.0, atol=1e-10 * scale)
 
 
 @pytest.mark.parametrize(

@@ -47,10 +47,10 @@ def test_events_against_scipy(law, chain, contact):
         assert runner.run(14.0) == Status.COMPLETED
         time, block, kind = runner.events()
         check_events(list(zip(time, block + 1, kind, strict=True)), expected, 1e-8)
-    found = new_ensemble(model).run(
+    results = new_ensemble(model).run(
         start.position[None], start.velocity[None], start.stuck[None], [14.0], events=len(expected) + 1
     )
-    columns = (found[f"event_{name}"][0, : found["event_count"][0]] for name in ("time", "block", "kind"))
+    columns = (results[f"event_{name}"][0, : results["event_count"][0]] for name in ("time", "block", "kind"))
     check_events(list(zip(*columns, strict=True)), expected, 1e-8)
 
 
@@ -58,8 +58,8 @@ def test_events_against_scipy(law, chain, contact):
 def test_perturbations_against_differences(law, chain):
     model = Model(chain, law_of(law, 0.2))
     start = rest(model, 3)
-    found = carry(model, start, 6.0, directions(start))[0].perturbations
+    perturbations = carry(model, start, 6.0, directions(start))[0].perturbations
     expected = differences(model, start, 6.0, 1e-4)
     assert expected is not None
     free = directions(start).any(axis=0)
-    assert np.allclose(found[:, free], expected[0][:, free], rtol=0.0, atol=1e-6 * np.abs(found).max())
+    assert np.allclose(perturbations[:, free], expected[0][:, free], rtol=0.0, atol=1e-6 * np.abs(perturbations).max())

@@ -30,7 +30,7 @@ def test_first_roots():
             c = np.convolve(c, [centre**2 + height**2, -2 * centre, Fraction(1)])
         scale = max(map(abs, c)) * (-1 if c[0] < 0 else 1)
         c = np.array([float(x / scale) for x in c])
-        found = first_root(c, 1.0)
+        value = first_root(c, 1.0)
         exact = [Fraction(x) for x in c]
         # Truth: the rational polynomial changes sign for the first time at the first root of odd multiplicity.
         expected = min((r for r in roots if r <= 1 and roots.count(r) % 2), default=None)
@@ -38,12 +38,12 @@ def test_first_roots():
         slope = 1.0 if missing else abs(float(at([k * x for k, x in enumerate(exact)], expected) / expected))
         if slope < 1e-9:
             continue
-        if found >= 0.0 if missing else 0.0 <= found < float(expected) - 1e-6:
+        if value >= 0.0 if missing else 0.0 <= value < float(expected) - 1e-6:
             # Only a touch, or a dip below rounding, may be taken for a root where there is none.
-            assert abs(at(exact, Fraction(found))) < 1e-15, (trial, found)
+            assert abs(at(exact, Fraction(value))) < 1e-15, (trial, value)
         elif not missing:
             checked += 1
-            assert abs(found - float(expected)) < 1e-13 / slope + 1e-15, (trial, found, float(expected))
+            assert abs(value - float(expected)) < 1e-13 / slope + 1e-15, (trial, value, float(expected))
     assert checked > 250
 
 
@@ -53,11 +53,11 @@ def test_dips_of_any_depth():
         for sign in (1, -1):
             depth = sign * 10.0**-exponent
             square = [0.371**2 - depth, -2 * 0.371, 1.0]
-            found = first_root(np.convolve(square, [1.0, 1.0]), 1.0)
+            root = first_root(np.convolve(square, [1.0, 1.0]), 1.0)
             if sign < 0:
-                assert found == -1.0
+                assert root == -1.0
             else:
-                assert abs(found - (0.371 - depth**0.5)) < 1e-15 / depth**0.5 + 1e-15
+                assert abs(root - (0.371 - depth**0.5)) < 1e-15 / depth**0.5 + 1e-15
 
 
 def test_roots_at_the_ends():
@@ -72,7 +72,7 @@ def test_maxima():
         c = np.array([generator.uniform(-1, 1) / (k + 1) for k in range(generator.randint(1, 13))])
         length = generator.uniform(0.01, 2.0)
         greatest = np.polyval(c[::-1], np.linspace(0.0, length, 20001)).max()
-        found = maximum(c, length, -1e300)
+        value = maximum(c, length, -1e300)
         rounding = 1e-15 * (1.0 + (np.abs(c) * length ** np.arange(len(c))).sum())
-        assert greatest - rounding <= found <= greatest + 1e-6, (trial, found, greatest)
+        assert greatest - rounding <= value <= greatest + 1e-6, (trial, value, greatest)
         assert maximum(c, length, 1e9) == 1e9

@@ -29,10 +29,10 @@ def resting(model, position, time=0.0):
     )
 
 
-def slips(found):
+def slips(events):
     """Return the slips of two blocks in each event, shape (events, 2)."""
-    table, event = np.zeros((len(found.time), 2)), np.repeat(np.arange(len(found.time)), found.blocks)
-    table[event, found.slip_block - 1] = found.slip
+    table, event = np.zeros((len(events.time), 2)), np.repeat(np.arange(len(events.time)), events.blocks)
+    table[event, events.slip_block - 1] = events.slip
     return table
 
 
@@ -58,9 +58,9 @@ def next_event(position, coupling, threshold=(1.0, 2.25), friction=0.8):
             events.append(stop if slip[k] else start)
             events[-1].terminal, events[-1].direction = True, -1
         # U' of a block that has just started leaves 0 upward.
-        found = solve_ivp(motion, (0.0, 20.0), [*y, *u], method="DOP853", rtol=1e-12, atol=1e-14, events=events)
-        which = next(k for k in range(2) if len(found.t_events[k]))
-        y, u = found.y[:2, -1], found.y[2:, -1].copy()
+        solution = solve_ivp(motion, (0.0, 20.0), [*y, *u], method="DOP853", rtol=1e-12, atol=1e-14, events=events)
+        which = next(k for k in range(2) if len(solution.t_events[k]))
+        y, u = solution.y[:2, -1], solution.y[2:, -1].copy()
         u[which] = 0.0
         slip[which] = not slip[which]
     return y, y - before
@@ -70,14 +70,14 @@ def test_two_blocks_of_huang_and_turcotte():
     """Different states lead to the same cycle of four events."""
     model = two_blocks()
     for position in ((-0.45, -1.02), (-0.55, -0.95)):
-        found = record_events(
+        events = record_events(
             model, resting(model, position), 5000.0, begin=4500.0, profiles=True, loading="quasistatic"
         )
-        table = slips(found)[:4]
+        table = slips(events)[:4]
         assert np.allclose(table[table[:, 1] == 0.0], [[0.0941176, 0.0]] * 2, atol=1e-7)
         large = table[table[:, 1] > 0.0]
         assert np.allclose(large[np.argsort(large[:, 0])], [[0.4765242, 0.5799702], [0.5563011, 0.6410904]], atol=1e-7)
-        begin, end = (float(found.time[k : k + 2].mean()) for k in (2, 6))
+        begin, end = (float(events.time[k : k + 2].mean()) for k in (2, 6))
         runner = Runner(model, loading="quasistatic")
         runner.begin(resting(model, position))
         assert runner.run(begin) == Status.COMPLETED
@@ -90,10 +90,10 @@ def test_two_blocks_of_huang_and_turcotte():
 def test_events_of_two_blocks(coupling):
     """The events are compared one by one, since chaos makes the motions diverge."""
     model = two_blocks(coupling)
-    found = record_events(model, resting(model, (-0.45, -1.02)), 900.0, profiles=True, loading="quasistatic")
-    assert len(found.time) > 12
-    moved = np.cumsum(slips(found), axis=0)
-    for before, expected in list(zip(moved, slips(found)[1:], strict=False))[:12]:
+    events = record_events(model, resting(model, (-0.45, -1.02)), 900.0, profiles=True, loading="quasistatic")
+    assert len(events.time) > 12
+    moved = np.cumsum(slips(events), axis=0)
+    for before, expected in list(zip(moved, slips(events)[1:], strict=False))[:12]:
         _, slip = next_event(np.array([-0.45, -1.02]) + before, coupling)
         assert np.allclose(slip, expected, rtol=0.0, atol=1e-9)
 
@@ -102,8 +102,8 @@ def test_events_of_two_blocks(coupling):
 def test_a_slow_driver_tends_to_it(v, multiplier):
     model = two_blocks(v=v)
     start, end = resting(model, (-0.45, -1.02)), 60.0 / v
-    found = record_events(model, start, end, begin=0.8 * end)
-    begin, end = (float(found.time[k : k + 2].mean()) for k in (2, 6))
+    events = record_events(model, start, end, begin=0.8 * end)
+    begin, end = (float(events.time[k : k + 2].mean()) for k in (2, 6))
     runner = Runner(model)
     runner.begin(start)
     assert runner.run(begin) == Status.COMPLETED
@@ -118,10 +118,10 @@ def test_exponents_are_those_of_the_multipliers():
     start = resting(model, (-0.45, -1.02))
     time = record_events(model, start, 9000.0, begin=8000.0, loading="quasistatic").time
     end = 4000.0 + 40 * float(time[-1] - time[-5])
-    found = event_exponents(model, start, end, begin=4000.0, count=2)
-    assert found.events == 160
-    assert found.exponent[0] == pytest.approx(math.log(0.58823) / 4, abs=5e-6)
-    assert found.exponent[1] == -math.inf
+    spectrum = event_exponents(model, start, end, begin=4000.0, count=2)
+    assert spectrum.events == 160
+    assert spectrum.exponent[0] == pytest.approx(math.log(0.58823) / 4, abs=5e-6)
+    assert spectrum.exponent[1] == -math.inf
 
 
 @pytest.mark.parametrize("groups", [False, True])
@@ -165,12 +165,12 @@ def test_the_released_energy_is_what_the_springs_lose(groups):
 
 def test_groups_and_the_chain_as_a_whole_have_the_same_events():
     model = Model(Chain(40, coupling=20.0, pulling=1.0), law_of("carlson_langer", 2.0), 0.01)
-    one, other = (
+    grouped, ungrouped = (
         record_catalogue(model, at_rest(model), 30.0, groups, loading="quasistatic")[0] for groups in (True, False)
     )
-    assert len(one["time"]) == len(other["time"]) > 20
-    for name, values in one.items():
-        assert np.allclose(values, other[name], rtol=1e-6, atol=1e-8, equal_nan=True), name
+    assert len(grouped["time"]) == len(ungrouped["time"]) > 20
+    for name, values in grouped.items():
+        assert np.allclose(values, ungrouped[name], rtol=1e-6, atol=1e-8, equal_nan=True), name
 
 
 @pytest.mark.parametrize("blocks", [3, 40])
@@ -183,9 +183,9 @@ def test_consecutive_runs_have_the_catalogue_of_the_whole_run(blocks):
         at = parts[-1].final
     assert len(whole.time) > 30
     for name in ("time", "slip_time", "duration", "moment", "energy_released", "interval"):
-        found = np.concatenate([getattr(part, name) for part in parts])
+        values = np.concatenate([getattr(part, name) for part in parts])
         exact = name != "energy_released"
-        assert np.allclose(found, getattr(whole, name), rtol=0.0 if exact else 1e-12, atol=0.0, equal_nan=True), name
+        assert np.allclose(values, getattr(whole, name), rtol=0.0 if exact else 1e-12, atol=0.0, equal_nan=True), name
 
 
 def test_friction_that_does_not_drop_is_refused():

@@ -81,15 +81,15 @@ def test_24_blocks_synchronize_exactly():
 def test_a_run_in_parts_equals_the_whole_run_to_the_bit(case, groups, cuts):
     model, start, _, loading, end = case
     runner, whole = follow_run(model, start, end, groups, loading)
-    state, found = start, []
+    state, legs = start, []
     for time in sorted(end * cut for cut in cuts):
         part, rows = follow_run(model, state, time, groups, loading)
         state = part.final()
-        found.append(rows)
+        legs.append(rows)
     part, rows = follow_run(model, state, end, groups, loading)
-    found.append(rows)
+    legs.append(rows)
     assert np.array_equal(part.state().vector(), runner.state().vector())
-    for expected, parts in zip(whole, zip(*found, strict=True), strict=True):
+    for expected, parts in zip(whole, zip(*legs, strict=True), strict=True):
         axis = 1 if expected is whole[0] else 0
         assert np.array_equal(np.concatenate(parts, axis=axis), expected)
 
@@ -102,12 +102,12 @@ def test_runs_of_length_zero_change_nothing(groups):
         position = np.random.default_rng(seed).uniform(-1.2, -0.9, 3) - model.sliding_offset
         start = ChainState(position, np.zeros(3), np.ones(3, dtype=bool))
         whole = follow_run(model, start, 30.0, groups, "steady")[1]
-        state, found = start, []
+        state, legs = start, []
         for time in (1.6, 1.6, 1.6, 30.0):
             part, rows = follow_run(model, state, time, groups, "steady")
             state = part.final()
-            found.append(rows)
-        for axis, (expected, parts) in zip((1, 0), zip(whole, zip(*found, strict=True), strict=True), strict=True):
+            legs.append(rows)
+        for axis, (expected, parts) in zip((1, 0), zip(whole, zip(*legs, strict=True), strict=True), strict=True):
             assert np.array_equal(np.concatenate(parts, axis=axis), expected)
 
 
@@ -130,14 +130,14 @@ WAYS = ("whole", "groups", "exponents", "catalogue", "any")
 def leg(model, state, end, way, loading):
     """Move a state to a time in one of the modes, and return the state there."""
     blocks = model.blocks
-    given = {
+    options = {
         "whole": {"groups": False},
         "groups": {"groups": True},
         "any": {},
         "exponents": {"exponents": Exponents(blocks, 2, state.time, np.array([state.time, end]))},
         "catalogue": {"catalogue": Catalogue(blocks, state.time, True, MOST_NUMBERS)},
     }[way]
-    runner = Runner(model, loading=loading, **given)
+    runner = Runner(model, loading=loading, **options)
     runner.begin(state)
     assert runner.run(end) == Status.COMPLETED
     return runner.final()
@@ -147,9 +147,9 @@ def ends_after(model, start, loading):
     """Return a time, some 60 stops and starts later, at which no slip is in progress and rounding errors are small."""
     if loading == "steady":
         return start.time + 8.0
-    found = record_events(model, start, start.time + 20.0, loading=loading)
-    last = max(1, int(np.searchsorted(np.cumsum(2 * found.blocks), 60)))
-    return 0.5 * (found.time[last - 1] + found.time[last])
+    events = record_events(model, start, start.time + 20.0, loading=loading)
+    last = max(1, int(np.searchsorted(np.cumsum(2 * events.blocks), 60)))
+    return 0.5 * (events.time[last - 1] + events.time[last])
 
 
 @settings(max_examples=100)

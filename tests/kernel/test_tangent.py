@@ -115,10 +115,10 @@ def check_against_differences(model, start, end):
     The error of second order, of which the two steps show three quarters, is below 3e-5 of the map; extrapolation
     leaves one of fourth order, about the square of that. Rounding of 1e-15 over the step gives 1e-11, amplified.
     """
-    found = differences(model, start, end, 1e-4)
-    if found is None:
+    quotients = differences(model, start, end, 1e-4)
+    if quotients is None:
         return None
-    expected, change = found
+    expected, change = quotients
     scale = max(1.0, np.abs(expected).max())
     if change > 2e-5 * scale:
         return None
@@ -255,10 +255,12 @@ def test_each_vector_is_independent_of_the_others(law, count):
 def test_perturbations_change_nothing_of_the_run(law):
     model = Model(Chain(3), law_of(law, 0.2))
     start = model.begin(PAPER_STATES["plus"])
-    (one, events), (other, others) = (carry(model, start, 100.0, given) for given in (directions(start), None))
-    assert events == others
-    assert (one.state().vector() == other.state().vector()).all()
-    assert one.kernel.steps == other.kernel.steps
+    (perturbed, events), (bare, events_bare) = (
+        carry(model, start, 100.0, basis) for basis in (directions(start), None)
+    )
+    assert events == events_bare
+    assert (perturbed.state().vector() == bare.state().vector()).all()
+    assert perturbed.kernel.steps == bare.kernel.steps
 
 
 def test_a_solver_that_begins_again_forgets_its_stops(law):

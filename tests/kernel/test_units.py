@@ -44,18 +44,18 @@ def test_shorter_units_of_time_and_length_change_no_bit(blocks, law, symmetric, 
 def test_a_stiff_light_block_moves_as_one_of_the_paper():
     """(pulling, mass, a, v) = (1e6, 0.05, 22.36, 4.47e-4) is (1, 1, 0.1, 0.1) in other units."""
     time, length = (0.05 / 1e6) ** 0.5, 1e-6
-    own = Model(Chain(1, pulling=1.0), law_of("linearized", 0.1), 0.1)
+    paper_model = Model(Chain(1, pulling=1.0), law_of("linearized", 0.1), 0.1)
     stiff = Model(Chain(1, pulling=1e6, mass=0.05), law_of("linearized", 0.1 * time / length), 0.1 * length / time)
-    one = run_of(own, ((-0.9,), (0.1,)), 200.0)
+    paper_run = run_of(paper_model, ((-0.9,), (0.1,)), 200.0)
     other = run_of(stiff, ((-0.9 * length,), (0.1 * length / time,)), 200.0 * time)
     assert other.status == "completed"
-    assert len(one.event_time) > 20
-    assert one.event_time == pytest.approx(other.event_time / time, abs=1e-9)
-    assert one.event_kind.tolist() == other.event_kind.tolist()
+    assert len(paper_run.event_time) > 20
+    assert paper_run.event_time == pytest.approx(other.event_time / time, abs=1e-9)
+    assert paper_run.event_kind.tolist() == other.event_kind.tolist()
     # Many periods fall into one unit of time.
     longer = run_of(stiff, ((-0.9 * length,), (0.1 * length / time,)), 10.0)
     assert longer.status == "completed"
-    assert longer.event_count == pytest.approx(len(one.event_time) / 200.0 / time * 10.0, rel=0.05)
+    assert longer.event_count == pytest.approx(len(paper_run.event_time) / 200.0 / time * 10.0, rel=0.05)
     at = stiff.begin(InitialState("own", (-0.9 * length,), (0.1 * length / time,)))
     lanes = new_ensemble(stiff).run(at.position[None], at.velocity[None], at.stuck[None], np.array([10.0]))
     assert lanes["event_count"][0] == longer.event_count
@@ -69,7 +69,7 @@ def test_exponents_of_a_fast_chain():
         Model(Chain(3, size, (size, 2.0 * size, size), mass=1.0 / size), law_of("linearized", 0.2), 0.125)
         for size in (1.0, factor)
     )
-    one, other = run_of(paper, initial, 4000.0, 3), run_of(fast, short, 4000.0 / factor, 3)
-    assert one.lyapunov_exponent[0] > 0.005
-    assert other.lyapunov_exponent / factor == pytest.approx(one.lyapunov_exponent, abs=5e-3)
-    assert other.lyapunov_infinite_count == one.lyapunov_infinite_count
+    slow_run, fast_run = run_of(paper, initial, 4000.0, 3), run_of(fast, short, 4000.0 / factor, 3)
+    assert slow_run.lyapunov_exponent[0] > 0.005
+    assert fast_run.lyapunov_exponent / factor == pytest.approx(slow_run.lyapunov_exponent, abs=5e-3)
+    assert fast_run.lyapunov_infinite_count == slow_run.lyapunov_infinite_count

@@ -78,9 +78,9 @@ def test_series_along_a_motion(law):
         def along(function):
             return mpmath.taylor(lambda t: function(mpmath.polyval(coefficients, t, asc=True)), 0, len(speed) - 1)
 
-        for found, expected in ((value, along(phi)), (slope, along(lambda u: mpmath.diff(phi, u)))):
+        for series, expected in ((value, along(phi)), (slope, along(lambda u: mpmath.diff(phi, u)))):
             scale = max(abs(x) for x in expected)
-            assert max(abs(mpmath.mpf(x) - y) for x, y in zip(found.tolist(), expected, strict=True)) <= 1e-12 * scale
+            assert max(abs(mpmath.mpf(x) - y) for x, y in zip(series.tolist(), expected, strict=True)) <= 1e-12 * scale
 
 
 @each_law
@@ -107,13 +107,13 @@ def test_tangent_map_through_stops_and_starts(law):
     checked, starts = 0, 0
     for end in (2.0, 7.0, 13.5, 16.6):
         runner, events = carry(model, start, end, directions(start))
-        found = runner.perturbations
+        perturbations = runner.perturbations
         expected, change = differences(model, start, end, 1e-5) or (None, np.inf)
-        scale = max(1.0, np.abs(found).max())
+        scale = max(1.0, np.abs(perturbations).max())
         if change <= 1e-5 * scale:
             checked += 1
             starts += sum(kind for _, _, kind in events)
-            assert np.abs(found - expected).max() < 1e-5 * scale
+            assert np.abs(perturbations - expected).max() < 1e-5 * scale
     assert checked >= 2
     assert starts > 0 or law.a == 0.0
 

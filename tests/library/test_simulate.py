@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, InitialState, Model, SearchSettings, Settings, basin_map, law_of, simulate
-from burridge_knopoff.library.by_name import RunSettings, SearchOptions
+from burridge_knopoff.library.keyword_settings import RunSettings, SearchOptions
 from burridge_knopoff.model.fields import fields_of
 from tests.refused import refused
 

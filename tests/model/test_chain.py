@@ -139,9 +139,9 @@ def test_forces_on_anything_that_numpy_reads(chain):
         expected = force(values)
         assert np.array_equal(expected, np.array([force(row) for row in values]))
         for form in (np.matrix(values), values.tolist(), np.ma.masked_array(values)):
-            found = force(form)
-            assert type(found) is np.ndarray
-            assert np.array_equal(found, expected)
+            forces = force(form)
+            assert type(forces) is np.ndarray
+            assert np.array_equal(forces, expected)
         for form in (values[:, :2], np.matrix(values).T, 1.0, []):
             with refused("expected shape (…, 3): one number per block on the last axis"):
                 force(form)

@@ -52,9 +52,9 @@ def test_initial_state_by_name_or_numbers():
     for name, meant in (("Plus", "plus"), ("plsu", "plus"), ("MINUS", "minus"), ("mins", "minus")):
         with refused(f"initial: {name!r}, expected minus | plus (did you mean {meant}?), or both"):
             initial_state(name)
-    for given in ({}, {"position": (1.0, 2.0)}, {"velocity": (1.0, 2.0)}):
+    for numbers in ({}, {"position": (1.0, 2.0)}, {"velocity": (1.0, 2.0)}):
         with refused("initial: 'own', expected minus | plus, or both position and velocity"):
-            initial_state("own", **given)
+            initial_state("own", **numbers)
 
 
 @pytest.mark.parametrize("chain", CHAINS)
@@ -62,9 +62,9 @@ def test_initial_state_by_name_or_numbers():
 @pytest.mark.parametrize("state", PAPER_STATES.values(), ids=PAPER_STATES)
 def test_at_the_v_of_the_paper_its_numbers_are_those_of_the_paper(state, law, chain):
     model = Model(chain, law, 0.1)
-    followed, given = (model.initial_coordinates(one) for one in (state, as_numbers(state)))
-    assert np.array_equal(followed, given)
-    assert np.array_equal(given, [state.position, state.velocity])
+    followed, numbers = (model.initial_coordinates(initial) for initial in (state, as_numbers(state)))
+    assert np.array_equal(followed, numbers)
+    assert np.array_equal(numbers, [state.position, state.velocity])
     assert simulate_command(model, state, Settings()) == simulate_command(model, as_numbers(state), Settings())
 
 
@@ -79,7 +79,7 @@ def test_velocities_and_distances_from_uniform_sliding_are_in_proportion_to_v(la
         np.testing.assert_allclose(position - uniform_sliding(model), v / 0.1 * distance, rtol=1e-13, atol=1e-15)
         np.testing.assert_allclose(velocity, v / 0.1 * np.array(state.velocity), rtol=1e-15)
         assert np.array_equal(model.initial_coordinates(as_numbers(state)), [state.position, state.velocity])
-        commands = {simulate_command(model, one, Settings()) for one in (state, as_numbers(state))}
+        commands = {simulate_command(model, initial, Settings()) for initial in (state, as_numbers(state))}
         assert len(commands) == 2
 
 
@@ -113,8 +113,8 @@ def test_a_run_is_repeated_from_its_initial_state_and_stores_where_it_began():
     again = simulate(run.model, initial=run.initial, **options)
     stored = run.to_dataset()
     numbers = (stored["initial_position"].values, stored["initial_velocity"].values)
-    own = simulate(run.model, initial=numbers, **options)
-    for other in (again, own):
+    from_numbers = simulate(run.model, initial=numbers, **options)
+    for other in (again, from_numbers):
         assert np.array_equal(run.event_time, other.event_time)
         assert np.array_equal(run.event_position, other.event_position)
     assert stored.attrs["history"] == again.to_dataset().attrs["history"]
@@ -122,8 +122,8 @@ def test_a_run_is_repeated_from_its_initial_state_and_stores_where_it_began():
 
 def test_own_numbers_are_taken_as_they_are_under_any_name():
     plus = PAPER_STATES["plus"]
-    for given in (as_numbers(plus), {"name": "plus", "position": plus.position, "velocity": plus.velocity}):
-        stored = simulate("linearized", 0.08, given, v=0.2, transient=0.0, window=1.0).to_dataset()
+    for form in (as_numbers(plus), {"name": "plus", "position": plus.position, "velocity": plus.velocity}):
+        stored = simulate("linearized", 0.08, form, v=0.2, transient=0.0, window=1.0).to_dataset()
         assert stored["initial_position"].values.tolist() == list(plus.position)
     with refused("initial.name: 'plus', expected another name"):
         simulate("linearized", 0.08, {"name": "plus", "position": plus.position, "velocity": (0.1, 0.1, 0.1)})

@@ -15,6 +15,6 @@ def test_a_law_must_be_analytic_up_to_the_driver_velocity():
 
 
 def test_a_model_requires_a_chain_and_a_law():
-    for given, key in (((3, law_of("linearized", 0.1)), "chain"), ((Chain(3), "linearized"), "law")):
+    for arguments, key in (((3, law_of("linearized", 0.1)), "chain"), ((Chain(3), "linearized"), "law")):
         with pytest.raises(ValueError, match=f"^{key}: got .*, expected a {key.capitalize()}$"):
-            Model(*given)
+            Model(*arguments)

@@ -152,7 +152,7 @@ def solve_exactly(matrix, load):
     for i, row in enumerate(rows):
         for k, other in enumerate(rows):
             if k != i and other[i]:
-                rows[k] = [value - other[i] / row[i] * own for value, own in zip(other, row, strict=True)]
+                rows[k] = [value - other[i] / row[i] * pivot for value, pivot in zip(other, row, strict=True)]
     return np.array([float(row[-1] / row[i]) for i, row in enumerate(rows)])
 
 

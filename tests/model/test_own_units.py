@@ -31,8 +31,8 @@ def test_units_scale_with_the_chain(time, length, force, values):
         threshold=[2.0**force * value for value in values[5:8]],
         mass=masses * values[8],
     )
-    own, found = one.own_units, other.own_units
-    factors = found.time / own.time, found.length / own.length, found.force / own.force
+    units, scaled_units = one.own_units, other.own_units
+    factors = scaled_units.time / units.time, scaled_units.length / units.length, scaled_units.force / units.force
     assert factors == (2.0**time, 2.0**length, 2.0**force)
 
 

@@ -18,13 +18,13 @@ def test_the_names_are_those_of_the_law_the_driver_and_the_chain():
 
 def test_a_model_with_changed_parameters_equals_one_built_from_them():
     numbers = {"a": 0.4, "sigma": 0.1, "eta": 0.3, "v": 0.1, "coupling": 2, "pulling": 0.5, "threshold": 1.5, "mass": 3}
-    made = Model(
+    expected = Model(
         Chain(3, coupling=2.0, pulling=0.5, threshold=1.5, mass=3.0),
         law_of("stribeck", 0.4, {"sigma": 0.1, "eta": 0.3}),
         v=0.1,
     )
-    assert MODEL.at(**numbers) == set_parameters(MODEL, numbers) == made
-    assert all(parameter_value(made, name) == value for name, value in numbers.items())
+    assert MODEL.at(**numbers) == set_parameters(MODEL, numbers) == expected
+    assert all(parameter_value(expected, name) == value for name, value in numbers.items())
     assert set_parameters(MODEL, {}) == MODEL
     assert MODEL.at(0.4) == MODEL.at(a=0.4) == Model(MODEL.chain, MODEL.law.at(0.4), 0.2)
     # Cached properties of the chain are kept.
@@ -57,11 +57,11 @@ DRAWN = Model(Chain(3, threshold="random=uniform,low=0.9,high=1.1,seed=1"), MODE
     ],
 )
 def test_the_parameter_of_one_block_or_spring(model, parameters, chain):
-    made = set_parameters(model, parameters)
-    assert made == Model(chain, model.law, model.v)
+    changed = set_parameters(model, parameters)
+    assert changed == Model(chain, model.law, model.v)
     for name, value in parameters.items():
         if name.endswith("]"):
-            assert parameter_value(made, name) == value
+            assert parameter_value(changed, name) == value
 
 
 def test_the_last_spring_of_a_ring_joins_the_last_block_to_the_first():
@@ -71,8 +71,8 @@ def test_the_last_spring_of_a_ring_joins_the_last_block_to_the_first():
 
 
 def test_the_random_numbers_of_the_other_blocks_are_kept():
-    one = DRAWN.at(**{"threshold[2]": 1.5}).chain
-    assert one.thresholds.tolist() == [DRAWN.chain.thresholds[0], 1.5, DRAWN.chain.thresholds[2]]
+    chain = DRAWN.at(**{"threshold[2]": 1.5}).chain
+    assert chain.thresholds.tolist() == [DRAWN.chain.thresholds[0], 1.5, DRAWN.chain.thresholds[2]]
     assert DRAWN.at(**{"threshold[2]": parameter_value(DRAWN, "threshold[2]")}).chain.is_equivalent_to(DRAWN.chain)
 
 

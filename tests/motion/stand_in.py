@@ -38,7 +38,7 @@ def stand_in(
     return Attractor(motion=SteadyMotion(**{**motion, **features}), symmetry=symmetry, partner=partner, **of_attractor)
 
 
-def shown(
+def section(
     returns: np.ndarray,
     mirror_returns: np.ndarray,
     spacing: float,

@@ -113,13 +113,13 @@ def test_the_mirrored_sample_has_the_mirrored_fate(blocks, a):
     watch = Watch(time_limit=2000.0)
     for state in SAMPLE.initial_states(blocks)[:3]:
         mirror = InitialState("mirror", state.position[::-1], state.velocity[::-1])
-        one, two = fate(chain, state, watch), fate(chain, mirror, watch)
-        assert one.outcome == two.outcome
-        assert one.pairs == two.pairs
-        if one.outcome == Outcome.SYNCHRONIZED:
-            assert abs(one.time - two.time) <= INTERVAL
+        first, second = fate(chain, state, watch), fate(chain, mirror, watch)
+        assert first.outcome == second.outcome
+        assert first.pairs == second.pairs
+        if first.outcome == Outcome.SYNCHRONIZED:
+            assert abs(first.time - second.time) <= INTERVAL
         else:
-            assert one.distance == pytest.approx(two.distance, rel=1e-6)
+            assert first.distance == pytest.approx(second.distance, rel=1e-6)
 
 
 def test_three_blocks_against_whole_runs(law):
@@ -206,10 +206,12 @@ FAR, NEAR_SYMMETRY = [(0.5, 0.3)] * 10, [(0.008, 0.006)] * 10
     ],
 )
 def test_distances_and_the_exponent_decide_the_fate(script_answers, distances, exponent, expected):
-    asked = script_answers(chains, "transverse_exponent", [exponent])
-    found = watch_state(Scripted(distances), ChainState(np.zeros(4), np.zeros(4), np.zeros(4, bool)), Watch(200.0))
-    assert astuple(found) == pytest.approx(astuple(expected), nan_ok=True)
-    assert [call[2:] for call in asked] == ([(200.0, 50.0)] if exponent else [])
+    calls = script_answers(chains, "transverse_exponent", [exponent])
+    fate_of_state = watch_state(
+        Scripted(distances), ChainState(np.zeros(4), np.zeros(4), np.zeros(4, bool)), Watch(200.0)
+    )
+    assert astuple(fate_of_state) == pytest.approx(astuple(expected), nan_ok=True)
+    assert [call[2:] for call in calls] == ([(200.0, 50.0)] if exponent else [])
 
 
 @pytest.mark.parametrize(("v", "pair", "near"), [(0.05, 0.5e-6, 0.005), (0.2, 1e-6, 0.02)])
@@ -218,13 +220,13 @@ def test_distances_scale_with_the_driver_velocity(script_answers, v, pair, near)
     runner = Scripted([])
     runner.model = Model(Chain(4), law_of("linearized", 0.1), v)
     for share, inside in ((0.99, True), (1.01, False)):
-        asked = script_answers(chains, "transverse_exponent", [(1.0, 0.1)] * 2)
+        calls = script_answers(chains, "transverse_exponent", [(1.0, 0.1)] * 2)
         runner.distances = [(0.5, share * pair)] * 10
         assert watch_state(runner, None, Watch(200.0)).pairs == inside
-        assert not asked
+        assert not calls
         runner.distances = [(share * near, 0.0)] * 10
         watch_state(runner, None, Watch(200.0))
-        assert len(asked) == inside
+        assert len(calls) == inside
 
 
 @pytest.mark.parametrize("start", ["moving", "tested"])
@@ -282,18 +284,18 @@ def test_in_chaos_the_error_is_the_scatter_of_whole_windows():
     """Consecutive windows scatter by the error of each."""
     chain = model(6, 0.25)
     state = chain.begin(SAMPLE.initial_states(6)[0])
-    found = np.array([transverse_exponent(chain, state, 200.0 + 500.0 * k, 500.0) for k in range(40)])
-    ratio = math.sqrt((found[:, 1] ** 2).mean()) / found[:, 0].std(ddof=1)
+    exponents = np.array([transverse_exponent(chain, state, 200.0 + 500.0 * k, 500.0) for k in range(40)])
+    ratio = math.sqrt((exponents[:, 1] ** 2).mean()) / exponents[:, 0].std(ddof=1)
     assert 0.75 < ratio < 1.5
 
 
 def test_a_state_is_watched_up_to_the_time_limit_at_most(monkeypatch):
     """There are checks every 20 until then."""
-    asked, run = [], Runner.run
-    monkeypatch.setattr(Runner, "run", lambda runner, time: asked.append(time) or run(runner, time))
+    times, run = [], Runner.run
+    monkeypatch.setattr(Runner, "run", lambda runner, time: times.append(time) or run(runner, time))
     chain = model(3, 0.2)
     assert fate(chain, SAMPLE.initial_states(3)[0], Watch(time_limit=219.0)).outcome != Outcome.SYNCHRONIZED
-    assert asked == [20.0 * check for check in range(1, 11)]
+    assert times == [20.0 * check for check in range(1, 11)]
 
 
 def test_a_watched_chain_equals_its_states_one_by_one():
@@ -350,8 +352,8 @@ def test_a_ring_synchronizes_if_its_transverse_exponent_is_negative():
     exponent, error = transverse_exponent(ring, start, 500.0, 1000.0)
     assert exponent < -10.0 * error
     fates = [fate(ring, state, Watch(time_limit=4000.0)) for state in SAMPLE.initial_states(4)[:4]]
-    found = [one.transverse_exponent for one in fates if one.outcome == Outcome.SYNCHRONIZED]
-    assert found == pytest.approx([exponent] * 2, abs=3.0 * error)
+    exponents = [item.transverse_exponent for item in fates if item.outcome == Outcome.SYNCHRONIZED]
+    assert exponents == pytest.approx([exponent] * 2, abs=3.0 * error)
 
 
 def test_a_perturbation_is_renewed_after_ten_time_units_at_most(monkeypatch):

@@ -85,9 +85,9 @@ def test_the_end_blocks_keep_one_frequency(detuning):
 
 def test_the_common_frequency_ends_at_a_detuning():
     assert from_plus(detuned_model(0.06, 0.8))[0][[0, 2]] == pytest.approx([0.2036, 0.1467], abs=5e-5)
-    one, two = (from_plus(detuned_model(0.03, detuning))[0] for detuning in (0.3, 0.5))
-    assert one[2] == pytest.approx(one[0], abs=1e-8)
-    assert abs(two[2] - two[0]) > 0.04
+    locked, drifting = (from_plus(detuned_model(0.03, detuning))[0] for detuning in (0.3, 0.5))
+    assert locked[2] == pytest.approx(locked[0], abs=1e-8)
+    assert abs(drifting[2] - drifting[0]) > 0.04
 
 
 def test_the_frequency_is_the_winding_rate_of_the_phase():
@@ -175,9 +175,9 @@ def test_in_short_slips_the_frequencies_are_the_rates_of_stops(chain, v, state, 
     allowed = 1.0 / 200_000.0
     for duration in (2500.0, 4000.0, 20_000.0, 100_000.0):
         frequency, error = block_frequencies(model, at, duration)
-        known = np.isfinite(frequency)
-        assert (np.abs(frequency - rate)[known] <= 1.5 * error[known] + allowed).all()
-        assert known.all() or duration < 20_000.0
+        finite = np.isfinite(frequency)
+        assert (np.abs(frequency - rate)[finite] <= 1.5 * error[finite] + allowed).all()
+        assert finite.all() or duration < 20_000.0
     assert (error < 0.03 * frequency).all()
 
 
@@ -280,13 +280,13 @@ def test_random_oscillations_are_as_accurate_as_they_say_or_unknown(seed):
     true = omega[np.abs(speed).argmax(axis=1)] / (2.0 * np.pi)
     for cycles in np.geomspace(0.5, 100.0, 12):
         frequency, error = block_frequencies(model, state, cycles / true.min())
-        known = np.isfinite(frequency) & clear
+        finite = np.isfinite(frequency) & clear
         # In few cycles two lines are hardly resolved.
         few = 0.05 * true * (cycles * true < 8.0 * true.min())
-        assert (np.abs(frequency - true)[known] <= np.maximum(2.0 * error, few)[known]).all()
-        assert (error[known] <= 0.25 * frequency[known]).all()
-        assert not known[cycles * true / true.min() < 1.0].any()
-    assert known[clear].all()
+        assert (np.abs(frequency - true)[finite] <= np.maximum(2.0 * error, few)[finite]).all()
+        assert (error[finite] <= 0.25 * frequency[finite]).all()
+        assert not finite[cycles * true / true.min() < 1.0].any()
+    assert finite[clear].all()
 
 
 def test_uniform_sliding_has_no_frequency():

@@ -34,9 +34,9 @@ def test_jumps_are_those_of_the_simulated_motion(name: str, law: str, contact: s
 
     def velocity(event: int, time: float) -> float:
         """Return U' of each block some time after an event."""
-        at, own = motion.event_velocity[event], motion.event_block[event] - 1
+        at, block = motion.event_velocity[event], motion.event_block[event] - 1
         stuck = at == 0.0
-        stuck[own] = motion.event_kind[event] == STOP
+        stuck[block] = motion.event_kind[event] == STOP
         position = motion.event_position[event] - model.sliding_offset
         return new_ensemble(model).run(position[None], at[None], stuck[None], [time])["velocity"][0, 0]
 

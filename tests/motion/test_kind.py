@@ -163,18 +163,18 @@ REGULAR = (0.1, (0.0, -1e-5), 1e-5)
 @pytest.mark.parametrize("points", [40, 400, 4000])
 def test_the_longest_period_decides_whatever_the_window(period, kind, points):
     mean, *exponents = REGULAR
-    found = motion_with(mean, period, *exponents, replace(MOTION, longest_period=5.0), points)
-    assert found.kind.name == kind
-    assert found.section_period == (5 if kind == "PERIODIC" else 0)
+    motion = motion_with(mean, period, *exponents, replace(MOTION, longest_period=5.0), points)
+    assert motion.kind.name == kind
+    assert motion.section_period == (5 if kind == "PERIODIC" else 0)
 
 
 def test_stops_show_a_longer_period():
     """The motion is locked: it has not left its periodic orbit, but no period is observed within a run."""
     states = np.tile(np.random.default_rng(5).random((50, 3)), (12, 1))
     run = run_of(states[:, 0], states) | {"lyapunov_exponent": np.zeros(2), "lyapunov_error": np.full(2, 1e-5)}
-    found = motion_of_completed_run(run, 0.1, replace(MOTION, longest_period=40.0))
-    assert found == Motion(MotionKind.QUASIPERIODIC, 0, 50.0)
-    assert not found.can_be_periodic
+    motion = motion_of_completed_run(run, 0.1, replace(MOTION, longest_period=40.0))
+    assert motion == Motion(MotionKind.QUASIPERIODIC, 0, 50.0)
+    assert not motion.can_be_periodic
     assert motion_of_completed_run(run, 0.1, MOTION) == Motion(MotionKind.PERIODIC, 50, 50.0)
     # The states of the last events cover too short a time to show it.
     late = run_of(states[:, 0], states, first_event=400.0)
@@ -284,9 +284,9 @@ def test_motion_that_repeats_at_its_stops_may_leave_its_orbit(growth, exponent, 
     states = np.tile(orbit, (cycles, 1)) + away * np.where(np.arange(cycles).repeat(50) % 2, 1.0, -1.0)[:, None]
     run = run_of(states[:, 0], states) | {"crossing_direction": np.full(len(states), -1)}
     run |= {"lyapunov_exponent": np.array([exponent, -1e-5]), "lyapunov_error": np.full(2, 8e-4)}
-    found = motion_of_completed_run(run, 0.1, MOTION)
+    motion = motion_of_completed_run(run, 0.1, MOTION)
     leaves = growth > (1.0 if exponent > MOTION.zero_exponent else 2.0)
-    assert found == (Motion(MotionKind.UNDETERMINED) if leaves else Motion(MotionKind.PERIODIC, 0, 50.0))
+    assert motion == (Motion(MotionKind.UNDETERMINED) if leaves else Motion(MotionKind.PERIODIC, 0, 50.0))
 
 
 @pytest.mark.parametrize("away", [1e-11, 1e-10])
@@ -307,8 +307,8 @@ def test_weak_chaos_is_not_regular_if_its_exponent_says_otherwise():
     shifts = [1e-11 * np.array([1.0, -0.3, 0.4]), *1e-10 * generator.normal(size=(11, 3))]
     for index, shift in enumerate(shifts):
         state = ChainState(start.position + shift, start.velocity, start.stuck)
-        found = observe(model, state, 20_000.0, 3000.0, MOTION)
-        assert found.kind not in (MotionKind.PERIODIC, MotionKind.QUASIPERIODIC) or found.exponent[0] < 5e-4
+        motion = observe(model, state, 20_000.0, 3000.0, MOTION)
+        assert motion.kind not in (MotionKind.PERIODIC, MotionKind.QUASIPERIODIC) or motion.exponent[0] < 5e-4
         if index < 3:
             # Longer windows decide.
             assert Classifier(model, 20_000.0, 3000.0, MOTION).measure(state).kind == MotionKind.CHAOTIC
@@ -319,8 +319,8 @@ def test_stable_uniform_sliding_is_not_periodic_motion():
     model = Model(Chain(3), law_of("stribeck", 0.3), 0.5)
     run = simulate(model, initial="plus", transient=2000.0, window=2000.0)
     assert run.lyapunov_exponent[0] < -0.01
-    found = motion_of_run(vars(run), True, MOTION)
-    assert (found.kind, found.section_period) == (MotionKind.UNDETERMINED, 0)
+    motion = motion_of_run(vars(run), True, MOTION)
+    assert (motion.kind, motion.section_period) == (MotionKind.UNDETERMINED, 0)
 
 
 def test_motion_that_repeats_without_section_points_is_periodic():

@@ -22,9 +22,9 @@ def test_a_state_returns_after_the_stated_time(initial, a, symmetry):
     runner = Runner(model, keep_events=True, events_from=5000.0)
     runner.begin(model.begin(PAPER_STATES[initial]))
     runner.run(5500.0)
-    found = list(_close_returns(model, runner.log.events.times(), runner.log.events.values()))
-    assert {returned for _, _, returned, _ in found} == {symmetry}
-    for start, time, _, size in found:
+    candidates = list(_close_returns(model, runner.log.events.times(), runner.log.events.values()))
+    assert {returned for _, _, returned, _ in candidates} == {symmetry}
+    for start, time, _, size in candidates:
         assert time > 1.0
         end = Runner(model).state_after(start, time)
         image = end.mirrored() if symmetry == Symmetry.SYMMETRIC else end
@@ -39,13 +39,13 @@ def test_the_first_of_equally_close_states_is_the_return(v, mirrored):
     stops = [(0.0, 1, state), (0.05, 3, image), (0.5, 3, image + 0.5), (1.0, 1, state + 0.5)]
     stops += [(1.1, 3, image + 1.5e-7), (2.0, 1, state), (3.0, 1, state)]
     values = np.array([[block, 0, *at] for _, block, at in stops])
-    found = list(
+    candidates = list(
         _close_returns(Model(Chain(3), law_of("linearized", 0.08), v), np.array([time for time, *_ in stops]), values)
     )
-    assert [time for _, time, *_ in found] == [2.0, *mirrored]
+    assert [time for _, time, *_ in candidates] == [2.0, *mirrored]
     kinds = {2.0: Symmetry.ASYMMETRIC, 1.1: Symmetry.SYMMETRIC}
-    assert [symmetry for *_, symmetry, _ in found] == [kinds[time] for _, time, *_ in found]
-    assert all(np.array_equal(start.vector(), state) for start, *_ in found)
+    assert [symmetry for *_, symmetry, _ in candidates] == [kinds[time] for _, time, *_ in candidates]
+    assert all(np.array_equal(start.vector(), state) for start, *_ in candidates)
 
 
 def test_a_distant_orbit_is_not_the_orbit_of_a_motion(monkeypatch):
@@ -80,8 +80,8 @@ def test_chaos_lies_on_none_of_the_orbits_that_it_passes_by(blocks, law, a, posi
 
 def test_an_unstable_orbit_is_that_of_a_motion_that_never_leaves_it():
     model = Model(Chain(3), law_of("linearized", 0.09))
-    found = limit_cycle(model, synchronized_orbit(model).reference)
-    assert (found.symmetry, multipliers(found).unstable_count) == (Symmetry.SYNCHRONIZED, 1)
+    orbit = limit_cycle(model, synchronized_orbit(model).reference)
+    assert (orbit.symmetry, multipliers(orbit).unstable_count) == (Symmetry.SYNCHRONIZED, 1)
 
 
 @pytest.mark.parametrize("apart", [0.0, 1e-11, 1e-10, 1e-9, 3e-9, 1e-8])
@@ -91,12 +91,12 @@ def test_synchrony_that_is_not_exact_is_periodic_too(apart):
     orbit = synchronized_orbit(model)
     start = orbit.reference
     position = start.position + np.array([0.5, 0.0, -0.5]) * apart
-    found = limit_cycle(model, ChainState(position, start.velocity, start.stuck))
-    assert found.period == pytest.approx(orbit.period, abs=1e-9)
-    assert found.symmetry == Symmetry.SYNCHRONIZED
+    cycle = limit_cycle(model, ChainState(position, start.velocity, start.stuck))
+    assert cycle.period == pytest.approx(orbit.period, abs=1e-9)
+    assert cycle.symmetry == Symmetry.SYNCHRONIZED
 
 
 def test_an_orbit_of_a_long_period_is_found():
     model = Model(Chain(3), law_of("linearized", 0.0575))
-    found = limit_cycle(model, model.begin(PAPER_STATES["plus"]), settling=100_000.0)
-    assert found.period == pytest.approx(2447.61, abs=0.01)
+    orbit = limit_cycle(model, model.begin(PAPER_STATES["plus"]), settling=100_000.0)
+    assert orbit.period == pytest.approx(2447.61, abs=0.01)

@@ -21,7 +21,7 @@ from burridge_knopoff.motion.classification import Classifier
 from burridge_knopoff.motion.observables import is_on_attractor
 from burridge_knopoff.motion.section_returns import visit
 from burridge_knopoff.motion.settings import MOTION
-from tests.motion.stand_in import ROWS, nearest, shown, stand_in
+from tests.motion.stand_in import ROWS, nearest, section, stand_in
 
 #: Some of them occur repeatedly.
 ROUND = np.tile(ROWS[:5], (8, 1))
@@ -38,21 +38,23 @@ def test_returns_are_the_stops_of_the_first_block(threshold):
     run = simulate(
         chain, initial=PAPER_STATES["plus"], settings=Settings(transient=500.0, window=300.0, batches=6, events="all")
     )
-    found = visit(chain, start, 500.0, 300.0)
+    visited = visit(chain, start, 500.0, 300.0)
     stops = [(run.event_time >= 500.0) & (run.event_block == block) & (run.event_kind == 0) for block in (1, 2, 3)]
     state = run.event_position - chain.sliding_offset, run.event_velocity
-    assert found.returns == pytest.approx(np.hstack([part[stops[0]] for part in state]), abs=1e-9)
+    assert visited.returns == pytest.approx(np.hstack([part[stops[0]] for part in state]), abs=1e-9)
     mirrored = np.hstack([part[stops[2], ::-1] for part in state])[: None if threshold == 1.0 else 0]
-    assert found.mirror_returns == pytest.approx(mirrored, abs=1e-9)
-    first, second = np.array_split(found.returns, 2)
-    assert found.spacing == pytest.approx(np.quantile(nearest(second, second, 1), 0.95))
-    ways = [np.quantile(nearest(one, other, 0), 0.95) for one, other in ((first, second), (second, first))]
-    assert found.drift == pytest.approx(max(ways))
-    assert found.state().vector().tolist() == found.returns[-1].tolist()
+    assert visited.mirror_returns == pytest.approx(mirrored, abs=1e-9)
+    first, second = np.array_split(visited.returns, 2)
+    assert visited.spacing == pytest.approx(np.quantile(nearest(second, second, 1), 0.95))
+    ways = [
+        np.quantile(nearest(points, reference, 0), 0.95) for points, reference in ((first, second), (second, first))
+    ]
+    assert visited.drift == pytest.approx(max(ways))
+    assert visited.state().vector().tolist() == visited.returns[-1].tolist()
 
     motion = Classifier(chain, 500.0, 300.0, MOTION).measure(start)
-    assert motion.returns == pytest.approx(found.returns, abs=1e-9)
-    assert motion.spacing == pytest.approx(found.spacing, abs=1e-9)
+    assert motion.returns == pytest.approx(visited.returns, abs=1e-9)
+    assert motion.spacing == pytest.approx(visited.spacing, abs=1e-9)
     assert motion.stop_rate.tolist() == [np.sum(chosen) / 300.0 for chosen in stops]
     assert motion.mean_distance == pytest.approx(run.mean_distance, abs=1e-9)
     assert motion.mean_distance_error == pytest.approx(run.mean_distance_error, abs=1e-9)
@@ -109,7 +111,7 @@ def test_mirror_images_of_a_motion():
 )
 def test_which_motions_lie_on_an_attractor(found, kind, spacing, own_spacing, expected):
     attractor = stand_in(returns=ROWS, kind=kind, spacing=spacing).motion
-    assert is_on_attractor(shown(found, ROWS, own_spacing, 0.0), attractor, 1e-3, 1e-6) == expected
+    assert is_on_attractor(section(found, ROWS, own_spacing, 0.0), attractor, 1e-3, 1e-6) == expected
 
 
 def test_a_motion_seen_from_the_other_end_stops_at_the_other_block():
@@ -119,6 +121,6 @@ def test_a_motion_seen_from_the_other_end_stops_at_the_other_block():
 
 def test_motions_with_returns_at_other_blocks_differ():
     attractor = stand_in(returns=ROWS).motion
-    found = shown(ROWS, ROWS, 0.0, 0.0)
-    assert is_on_attractor(found, attractor, 1e-3, 1e-6)
-    assert not is_on_attractor(replace(found, block=2), attractor, 1e-3, 1e-6)
+    motion = section(ROWS, ROWS, 0.0, 0.0)
+    assert is_on_attractor(motion, attractor, 1e-3, 1e-6)
+    assert not is_on_attractor(replace(motion, block=2), attractor, 1e-3, 1e-6)

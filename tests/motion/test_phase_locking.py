@@ -47,7 +47,7 @@ def test_orbit_of_a_locked_torus_is_where_the_motion_ends():
     assert np.abs(ends.returns[-1] - late[-1]).max() < 1e-8
     settling = [visit(LOCKED, start, 200_000.0 + k * orbit.period, 200.0).returns[0] for k in range(3)]
     last = visit(LOCKED, start, 200_000.0 + 200 * orbit.period, 200.0).returns[0]
-    distances = [np.abs(one - last).max() for one in settling]
+    distances = [np.abs(x - last).max() for x in settling]
     assert np.divide(distances[1:], distances[:-1]) == pytest.approx(factor, abs=0.01)
 
 
@@ -89,19 +89,19 @@ def test_an_orbit_must_exist_attract_and_be_approached():
     model = Model(Chain(3), law_of("linearized", 0.08))
     stable, unstable = limit_cycle(model, model.begin(PAPER_STATES["plus"]), settling=1000.0), weakly_repelling()
 
-    def found(orbit, away, time, window):
+    def locked(orbit, away, time, window):
         """Return the orbit found from returns at these distances from those of an orbit in consecutive windows."""
         turn = visit(orbit.model, orbit.reference, 0.0, window).returns
         return locked_orbit(orbit.model, np.concatenate([turn + distance for distance in away]), time)
 
     coming, period = (3e-6, 2e-6, 1e-6), stable.period
-    assert found(stable, coming, period, period).period == pytest.approx(period, abs=1e-9)
-    assert found(stable, coming[::-1], period, period) is None
+    assert locked(stable, coming, period, period).period == pytest.approx(period, abs=1e-9)
+    assert locked(stable, coming[::-1], period, period) is None
     # Three cycles: a single cycle has too few returns.
-    assert found(unstable, coming, 3.0 * unstable.period, 3.0 * unstable.period) is None
+    assert locked(unstable, coming, 3.0 * unstable.period, 3.0 * unstable.period) is None
     # No orbit has such a period.
     for time in (0.0, 0.4 * period):
-        assert found(stable, coming, time, period) is None
+        assert locked(stable, coming, time, period) is None
 
 
 @pytest.mark.parametrize(
@@ -121,12 +121,12 @@ def test_an_orbit_must_exist_attract_and_be_approached():
 )
 def test_each_cycle_must_be_closer(script_answers, v, away, expected):
     on_orbit = np.random.default_rng(5).uniform(-1.0, 1.0, (40, 6))
-    asked = script_answers(locking, "visit", [SimpleNamespace(returns=on_orbit)])
+    calls = script_answers(locking, "visit", [SimpleNamespace(returns=on_orbit)])
     orbit = SimpleNamespace(model=replace(LOCKED, v=v), reference="reference", period=100.0)
     # The oldest cycle is incomplete and is not compared.
     returns = np.concatenate([on_orbit[20:], *(on_orbit + distance for distance in away[::-1])])
     assert locking._is_approaching(returns, orbit) == expected
-    assert asked[0][:4] == (orbit.model, "reference", 0.0, 100.0)
+    assert calls[0][:4] == (orbit.model, "reference", 0.0, 100.0)
 
 
 def test_an_orbit_that_does_not_complete_is_not_approached(script_answers):

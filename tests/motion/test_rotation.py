@@ -49,24 +49,24 @@ def rotation(number, locked, in_grid, error=1e-9):
 
 def test_plateaux_are_runs_of_one_rotation_number():
     number = [0.65, 9 / 14, 9 / 14, 7 / 11, 7 / 11 + 1e-10, 7 / 11, np.nan, 7 / 11]
-    found = rotation(number, [0, 1, 1, 1, 1, 1, -1, 1], [1, 1, 0, 1, 0, 1, 1, 1])
-    listed = plateaux(found.sel(law="linearized"))
-    a = found["a"].values[0]
+    table = rotation(number, [0, 1, 1, 1, 1, 1, -1, 1], [1, 1, 0, 1, 0, 1, 1, 1])
+    listed = plateaux(table.sel(law="linearized"))
+    a = table["a"].values[0]
     assert listed == [
         Plateau(a[1], a[2], Fraction(9, 14)),
         # The plateau extends over values without a result.
         Plateau(a[3], a[7], Fraction(7, 11)),
     ]
     # If the errors exceed the difference between two ratios, the ratios are not found to be equal.
-    assert [one.first for one in plateaux(rotation(number, [1] * 8, [1] * 8, 1e-5).sel(law="linearized"))] == [
+    assert [plateau.first for plateau in plateaux(rotation(number, [1] * 8, [1] * 8, 1e-5).sel(law="linearized"))] == [
         *a[:6],
         a[7],
     ]
     # Inserted and unknown values do not count.
-    share, low, high = locked_share(found.sel(law="linearized"), a < 0.065)
+    share, low, high = locked_share(table.sel(law="linearized"), a < 0.065)
     assert share == 0.75
     assert low < share < high
-    assert np.isnan(locked_share(found.sel(law="linearized"), a > 1.0)).all()
-    panel = draw(found).axes[0]
+    assert np.isnan(locked_share(table.sel(law="linearized"), a > 1.0)).all()
+    panel = draw(table).axes[0]
     assert panel.get_title(loc="left") == "linearized law: 80 % of grid values locked"
     assert {text.get_text() for text in panel.texts} == {"9/14", "7/11"}

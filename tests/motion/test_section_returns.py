@@ -7,7 +7,7 @@ from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.motion import period
 from burridge_knopoff.motion.period import orbit_length
 from burridge_knopoff.motion.section_returns import has_same_stop_shares, returns_of, state_of
-from tests.motion.stand_in import ROWS, shown
+from tests.motion.stand_in import ROWS, section
 
 
 @pytest.mark.parametrize(
@@ -20,16 +20,16 @@ def test_returns_are_taken_at_the_outermost_block_that_stops(stopping, block, mi
     states = np.random.default_rng(3).uniform(size=(80, 8))
     chain, stops = Model(Chain(4), law_of("linearized", 0.1)), np.isin(number, stopping)
     number, states = number[stops], states[stops]
-    found = returns_of(chain, 40.0, number, states.__getitem__)
+    motion = returns_of(chain, 40.0, number, states.__getitem__)
     mirrored = returns_of(chain, 40.0, 5 - number, states[:, [3, 2, 1, 0, 7, 6, 5, 4]].__getitem__)
     if block is None:
-        assert found is None
+        assert motion is None
         return
-    assert (found.block, found.mirror_block) == (mirrored.mirror_block, mirrored.block) == (block, mirror_block)
-    assert found.window == 40.0
-    assert (found.returns == states[number == block]).all()
-    assert (found.returns == mirrored.mirror_returns).all()
-    assert (found.mirror_returns == mirrored.returns).all()
+    assert (motion.block, motion.mirror_block) == (mirrored.mirror_block, mirrored.block) == (block, mirror_block)
+    assert motion.window == 40.0
+    assert (motion.returns == states[number == block]).all()
+    assert (motion.returns == mirrored.mirror_returns).all()
+    assert (motion.mirror_returns == mirrored.returns).all()
 
 
 @pytest.mark.parametrize(
@@ -41,8 +41,8 @@ def test_eight_returns_show_a_set_and_its_mirror_image(first, last, symmetric, s
     chain = Chain(3, threshold=1.0 if symmetric else (1.0, 1.0, 0.9))
     block = np.array([1] * first + [3] * last)
     states = np.random.default_rng(3).uniform(size=(len(block), 6))
-    found = returns_of(Model(chain, law_of("linearized", 0.1)), 40.0, block, states.__getitem__)
-    assert (found is not None) == seen
+    motion = returns_of(Model(chain, law_of("linearized", 0.1)), 40.0, block, states.__getitem__)
+    assert (motion is not None) == seen
 
 
 @pytest.mark.parametrize(
@@ -81,10 +81,10 @@ def test_a_block_that_rarely_stops_gives_no_returns(stops, expected):
 
 
 def test_a_block_without_velocity_sticks():
-    found = state_of(np.array([1.0, 2.0, 3.0, 1e-14, -1e-14, 2e-14]))
-    assert found.position.tolist() == [1.0, 2.0, 3.0]
-    assert found.velocity.tolist() == [0.0, 0.0, 2e-14]
-    assert found.stuck.tolist() == [True, True, False]
+    state = state_of(np.array([1.0, 2.0, 3.0, 1e-14, -1e-14, 2e-14]))
+    assert state.position.tolist() == [1.0, 2.0, 3.0]
+    assert state.velocity.tolist() == [0.0, 0.0, 2e-14]
+    assert state.stuck.tolist() == [True, True, False]
 
 
 @pytest.mark.parametrize(
@@ -99,9 +99,9 @@ def test_a_block_without_velocity_sticks():
     ],
 )
 def test_which_motion_has_settled(spacing, drift, closed, settled):
-    found = shown(ROWS, ROWS, spacing, drift)
-    assert found.has_periodic_spacing(1e-6) == closed
-    assert found.is_settled(1e-6, 1e-3) == settled
+    motion = section(ROWS, ROWS, spacing, drift)
+    assert motion.has_periodic_spacing(1e-6) == closed
+    assert motion.is_settled(1e-6, 1e-3) == settled
 
 
 @pytest.mark.parametrize(
@@ -116,7 +116,7 @@ def test_which_motion_has_settled(spacing, drift, closed, settled):
     ],
 )
 def test_a_periodic_orbit_repeats_its_returns(rows, spacing, expected):
-    assert shown(rows, rows, spacing, 0.0).is_periodic(1e-6) == expected
+    assert section(rows, rows, spacing, 0.0).is_periodic(1e-6) == expected
 
 
 @pytest.mark.parametrize(

@@ -11,9 +11,9 @@ _T = TypeVar("_T")
 
 def stand_in(kind: type[_T], **attributes: Any) -> _T:
     """Return an object of a class with the given attributes only."""
-    one = object.__new__(kind)
-    one.__dict__.update(attributes)
-    return one
+    instance = object.__new__(kind)
+    instance.__dict__.update(attributes)
+    return instance
 
 
 def only(*keeping: complex) -> Multipliers:

@@ -44,7 +44,7 @@ def test_a_pair_with_product_1_distinguishes_a_torus_from_a_saddle(values, kind)
 def branch(monkeypatch):
     """Return a function that makes a branch from functions of the length: a, and the multiplier minus `at`."""
 
-    def made(value, a=lambda length: length, at=-1.0):
+    def point_at(value, a=lambda length: length, at=-1.0):
         def point(length, slope=1.0):
             orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=1.0)
             fields = {"value": a(length), "multipliers": only(at + value(length)), "length": length, "tangent": [slope]}
@@ -53,7 +53,7 @@ def branch(monkeypatch):
         monkeypatch.setattr(bifurcations, "step_along", lambda first, length: point(length))
         return point
 
-    return made
+    return point_at
 
 
 @pytest.mark.parametrize(
@@ -65,13 +65,13 @@ def test_a_branch_turns_back_in_a_at_a_fold(monkeypatch, branch, slopes, kind):
     monkeypatch.setattr(
         bifurcations, "minimal_form", lambda orbit, _: SimpleNamespace(symmetry=orbit.symmetry, period=1.0)
     )
-    found = bifurcations._root(
+    root = bifurcations._root(
         point(0.0, slopes[0]), point(0.5, slopes[1]), (BifurcationKind.FOLD, "symmetry_preserving")
     )
-    assert (None if found is None else found[1].kind) == kind
-    if found is not None:
-        assert found[0] == pytest.approx(0.3)
-        assert found[1].is_turning_point
+    assert (None if root is None else root[1].kind) == kind
+    if root is not None:
+        assert root[0] == pytest.approx(0.3)
+        assert root[1].is_turning_point
 
 
 @pytest.mark.parametrize(
@@ -127,9 +127,9 @@ def test_bifurcations_between_two_orbits_come_in_the_order_of_the_branch(monkeyp
         return stand_in(BranchOrbit, line=LINE, orbit=orbit, **fields)
 
     monkeypatch.setattr(bifurcations, "step_along", lambda first, length: point(length))
-    found = bifurcations._roots(point(0.0), point(0.5))
-    assert [bifurcation.a for bifurcation in found] == pytest.approx([0.2, 0.3, 0.5])
-    assert [bifurcation.kind for bifurcation in found] == [
+    roots = bifurcations._roots(point(0.0), point(0.5))
+    assert [bifurcation.a for bifurcation in roots] == pytest.approx([0.2, 0.3, 0.5])
+    assert [bifurcation.kind for bifurcation in roots] == [
         BifurcationKind.NEIMARK_SACKER,
         BifurcationKind.PITCHFORK,
         BifurcationKind.PERIOD_DOUBLING,
@@ -147,8 +147,8 @@ def test_bifurcations_between_two_orbits_come_in_the_order_of_the_branch(monkeyp
 def test_a_short_stick_counts_as_0_at_a_grazing(kind, sticks, shortest):
     """Within 1e-10 of the grazing, a duration that vanishes like a root is shorter than 1e-4."""
     orbit = SimpleNamespace(model=Model(Chain(3), law_of("linearized", 0.1)))
-    here = SimpleNamespace(orbit=orbit, grazing_distances=SimpleNamespace(stick=np.array(sticks)))
-    assert Bifurcation(0.1, 1e-9, kind, here, here, None, is_turning_point=False).stick_time == shortest
+    point = SimpleNamespace(orbit=orbit, grazing_distances=SimpleNamespace(stick=np.array(sticks)))
+    assert Bifurcation(0.1, 1e-9, kind, point, point, None, is_turning_point=False).stick_time == shortest
 
 
 @pytest.mark.parametrize(("before", "expected"), [(2.0004, 2.0), (3.9996, 4.0), (6.01, 6.0)])
@@ -199,18 +199,18 @@ def test_an_orbit_grazes_at_the_length_that_is_left(distance, slope, beyond, a, 
 )
 def test_a_branch_joins_a_simpler_one_at_the_nearest_bifurcation_of_the_latter(monkeypatch, upward, downward, expected):
     """The search goes in both directions, over the length of the last steps and twice the last change of a."""
-    asked, own = [], locate_bifurcations
+    calls, original = [], locate_bifurcations
 
     def followed(orbit, interval, *, parameter, upward):
         assert parameter == "a"
-        asked.append((orbit, *interval))
+        calls.append((orbit, *interval))
         return upward
 
     def located(branch):
         if branch not in (True, False):
-            return own(branch)
-        found = upward if branch else downward
-        return [Bifurcation(a, 1e-9, kind, "simple", None, None, is_turning_point=True) for a, kind in found]
+            return original(branch)
+        roots = upward if branch else downward
+        return [Bifurcation(a, 1e-9, kind, "simple", None, None, is_turning_point=True) for a, kind in roots]
 
     monkeypatch.setattr(bifurcations, "follow", followed)
     monkeypatch.setattr(bifurcations, "locate_bifurcations", located)
@@ -218,12 +218,12 @@ def test_a_branch_joins_a_simpler_one_at_the_nearest_bifurcation_of_the_latter(m
     orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=2.0)
     point = stand_in(BranchOrbit, line=LINE, orbit=orbit, value=0.11, length=0.02, is_grazing=False)
     end = stand_in(BranchOrbit, line=LINE, orbit=orbit, value=0.12, length=0.03, reduced_orbit=simple, is_grazing=False)
-    found = list(own([point, end]))
-    assert asked == [(simple, pytest.approx(0.05), pytest.approx(0.19))] * 2
+    roots = list(original([point, end]))
+    assert calls == [(simple, pytest.approx(0.05), pytest.approx(0.19))] * 2
     if expected is None:
-        assert found == []
+        assert roots == []
         return
-    (bifurcation,) = found
+    (bifurcation,) = roots
     assert (bifurcation.a, bifurcation.error, bifurcation.kind, bifurcation.at) == (
         expected,
         1e-9,
@@ -245,7 +245,7 @@ def test_a_branch_joins_a_simpler_one_at_the_nearest_bifurcation_of_the_latter(m
 )
 def test_a_fold_next_to_a_simpler_orbit_is_where_that_one_branches(monkeypatch, symmetry, away, kind):
     """Synchronized orbits have no simpler form."""
-    orbit, simple = (SimpleNamespace(symmetry=one, period=2.0) for one in (symmetry, Symmetry.SYMMETRIC))
+    orbit, simple = (SimpleNamespace(symmetry=s, period=2.0) for s in (symmetry, Symmetry.SYMMETRIC))
     monkeypatch.setattr(bifurcations, "minimal_form", lambda orbit, tolerance: simple if away <= tolerance else orbit)
     assert bifurcations.kind_at(SimpleNamespace(orbit=orbit), (BifurcationKind.FOLD, "symmetry_preserving")) == kind
     assert (

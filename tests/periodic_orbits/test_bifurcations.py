@@ -105,14 +105,14 @@ def test_symmetric_motion_doubles_its_period(families):
 
 
 def test_the_asymmetric_orbits_begin_at_the_pitchfork_and_end_at_a_grazing():
-    found = segment(settled_orbit(0.1), (0.01, 0.13), 4, STEPS)
-    assert found.downward.end.kind == BifurcationKind.PITCHFORK
-    assert found.downward.end.a == pytest.approx(CRITICAL["linearized"], abs=1e-10)
-    assert found.upward.end.kind == BifurcationKind.GRAZING
+    half_branches = segment(settled_orbit(0.1), (0.01, 0.13), 4, STEPS)
+    assert half_branches.downward.end.kind == BifurcationKind.PITCHFORK
+    assert half_branches.downward.end.a == pytest.approx(CRITICAL["linearized"], abs=1e-10)
+    assert half_branches.upward.end.kind == BifurcationKind.GRAZING
     # The stick of one end block vanishes and stability is lost: a multiplier jumps across the unit circle.
-    assert found.upward.end.after.orbit.stop_counts in ((1, 1, 0), (0, 1, 1))
-    assert np.abs(found.upward.end.before.multipliers.whole[0]) < 0.5
-    assert np.abs(found.upward.end.after.multipliers.whole[0]) > 1.3
+    assert half_branches.upward.end.after.orbit.stop_counts in ((1, 1, 0), (0, 1, 1))
+    assert np.abs(half_branches.upward.end.before.multipliers.whole[0]) < 0.5
+    assert np.abs(half_branches.upward.end.after.multipliers.whole[0]) > 1.3
 
 
 def test_a_branch_joins_a_simpler_one_only_nearby():
@@ -153,32 +153,32 @@ def test_a_fold_against_orbits_found_on_either_side_of_it(seven):
     assert bifurcation.kind == BifurcationKind.FOLD
     assert bifurcation.is_turning_point
     assert bifurcation.at.multipliers.whole[0] == pytest.approx(1.0, abs=1e-5)
-    here = bifurcation.before.orbit
-    gap = bifurcation.a - here.a
+    orbit = bifurcation.before.orbit
+    gap = bifurcation.a - orbit.a
     while gap > 1e-8:
         gap *= 0.25
-        here = at(here, bifurcation.a - gap)
+        orbit = at(orbit, bifurcation.a - gap)
     with pytest.raises(OrbitError):
-        at(here, bifurcation.a + 1e-8)
+        at(orbit, bifurcation.a + 1e-8)
 
 
 def test_a_bifurcation_does_not_depend_on_the_direction_of_continuation(seven):
     again = segment(seven.stable_orbits[-1].orbit, (0.13, 0.16), 4, ContinuationSettings(largest_step=3e-4))
-    for one, other in ((seven.downward.end, again.downward.end), (seven.upward.end, again.upward.end)):
-        assert one.a == pytest.approx(other.a, abs=1e-10)
-        assert (one.kind, one.is_turning_point) == (other.kind, other.is_turning_point)
+    for first, second in ((seven.downward.end, again.downward.end), (seven.upward.end, again.upward.end)):
+        assert first.a == pytest.approx(second.a, abs=1e-10)
+        assert (first.kind, first.is_turning_point) == (second.kind, second.is_turning_point)
 
 
 def test_a_doubled_orbit_ends_at_the_period_doubling_of_the_single_one():
     doubled = settled_orbit(0.135)
     assert sorted(doubled.stop_counts) == [12, 26, 26]
-    found = segment(doubled, (0.13, 0.15), 4, ContinuationSettings(largest_step=1e-4))
-    assert found.upward.end.kind == BifurcationKind.PERIOD_DOUBLING
-    doubling = segment(found.upward.orbits[-1].reduced_orbit, (0.13, 0.15), 4, STEPS).downward.end
-    assert doubling.a == pytest.approx(found.upward.end.a, abs=1e-10)
+    branch = segment(doubled, (0.13, 0.15), 4, ContinuationSettings(largest_step=1e-4))
+    assert branch.upward.end.kind == BifurcationKind.PERIOD_DOUBLING
+    doubling = segment(branch.upward.orbits[-1].reduced_orbit, (0.13, 0.15), 4, STEPS).downward.end
+    assert doubling.a == pytest.approx(branch.upward.end.a, abs=1e-10)
     assert doubling.at.multipliers.whole[0] == pytest.approx(-1.0, abs=1e-7)
     # The squared distance of the doubled orbit from its start after half its period falls to 0 there.
-    near = [point.orbit for point in found.stable_orbits if 0.0 < doubling.a - point.orbit.a < 6e-4]
+    near = [point.orbit for point in branch.stable_orbits if 0.0 < doubling.a - point.orbit.a < 6e-4]
     ends = [Runner(orbit.model).state_after(orbit.reference, 0.5 * orbit.period) for orbit in near]
     missed = [np.abs(end.vector() - orbit.reference.vector()).max() for end, orbit in zip(ends, near, strict=True)]
     slope, offset = np.polyfit([orbit.a for orbit in near], np.square(missed), 1)
@@ -190,8 +190,8 @@ def test_a_doubled_orbit_ends_at_the_period_doubling_of_the_single_one():
 def test_a_period_doubling_may_break_the_mirror_symmetry(law):
     """Two synchronized blocks separate so that each does in one period what the other does in the next."""
     model = Model(Chain(2), law_of(law, 0.05))
-    one = limit_cycle(model, model.begin(InitialState("one", (-0.9, -0.9), (0.1, 0.1))), 1000.0)
-    (doubling,) = locate_bifurcations(follow(one, (0.045, 0.055)))
+    orbit = limit_cycle(model, model.begin(InitialState("one", (-0.9, -0.9), (0.1, 0.1))), 1000.0)
+    (doubling,) = locate_bifurcations(follow(orbit, (0.045, 0.055)))
     assert doubling.kind == BifurcationKind.PERIOD_DOUBLING
     start = doubling.at.orbit.reference
     start = ChainState(start.position + np.array([0.002, -0.002]), start.velocity, start.stuck)
@@ -217,10 +217,10 @@ def test_a_torus_branches_off_where_perturbations_stop_decaying():
     assert abs(bifurcation.at.multipliers.whole[0].imag) > 0.1
     for offset, grows in ((-1e-3, False), (1e-3, True)):
         nearby = at(bifurcation.at.orbit, bifurcation.a + offset)
-        here = nearby.reference
-        start = ChainState(here.position + np.array([1e-6, 0.0, 0.0]), here.velocity, here.stuck)
+        reference = nearby.reference
+        start = ChainState(reference.position + np.array([1e-6, 0.0, 0.0]), reference.velocity, reference.stuck)
         end = Runner(nearby.model).state_after(start, 3000.0 * nearby.period)
-        assert (np.abs(end.vector() - here.vector()).max() > 1e-6) == grows
+        assert (np.abs(end.vector() - reference.vector()).max() > 1e-6) == grows
 
 
 @pytest.mark.parametrize("succeeds", [True, False])
@@ -233,9 +233,9 @@ def test_steps_become_longer_or_shorter_and_end(families, monkeypatch, succeeds)
         return points[-1] if succeeds else None
 
     monkeypatch.setattr(following, "smooth_step", step)
-    monkeypatch.setattr(following, "approach_grazing", lambda here, length: [])
-    found = follow(families["linearized"].at(0.08), (0.01, 0.1))
-    assert len(found) == (200 if succeeds else 1)
+    monkeypatch.setattr(following, "approach_grazing", lambda path, length: [])
+    branch = follow(families["linearized"].at(0.08), (0.01, 0.1))
+    assert len(branch) == (200 if succeeds else 1)
     expected = [1e-4, 2e-4, 4e-4, *[5e-4] * 196] if succeeds else [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9]
     assert lengths == pytest.approx(expected)
 

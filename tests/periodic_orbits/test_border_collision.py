@@ -48,21 +48,21 @@ def test_a_branch_point_lies_where_a_multiplier_reaches_1(values, length, expect
     ],
 )
 def test_a_step_keeps_the_stops(monkeypatch, stop_counts, simpler, ahead, made):
-    found = BranchOrbit(SimpleNamespace(stop_counts=stop_counts), np.zeros(4), line_along_a(Chain(1)))
+    ahead_point = BranchOrbit(SimpleNamespace(stop_counts=stop_counts), np.zeros(4), line_along_a(Chain(1)))
 
     def step(point, length):
         if stop_counts is None:
             raise OrbitError("none")
-        return found
+        return ahead_point
 
     monkeypatch.setattr(border_collision, "step_along", step)
     monkeypatch.setattr(border_collision, "reduced_orbit", lambda orbit: simpler)
     monkeypatch.setattr(border_collision, "_distance_to_branch_point", lambda way: ahead)
-    taken = border_collision.smooth_step([SimpleNamespace(orbit=SimpleNamespace(stop_counts=(1, 2)))], 0.1)
-    assert (taken is not None) == made
+    accepted = border_collision.smooth_step([SimpleNamespace(orbit=SimpleNamespace(stop_counts=(1, 2)))], 0.1)
+    assert (accepted is not None) == made
     if made:
-        assert taken.orbit is found.orbit
-        assert taken.reduced_orbit == simpler
+        assert accepted.orbit is ahead_point.orbit
+        assert accepted.reduced_orbit == simpler
 
 
 @pytest.mark.parametrize(
@@ -198,14 +198,14 @@ def turn(monkeypatch):
             border_collision, "reduced_orbit", lambda orbit: "one" if orbit.stop_counts in simple else None
         )
         reference = ChainState(np.array([0.5, 0.25]), np.zeros(2), np.zeros(2, dtype=bool))
-        known = {"model": SimpleNamespace(blocks=2), "return_time": 1.0, "symmetry": None}
-        orbit = SimpleNamespace(reference=reference, stop_counts=here, **known)
+        attributes = {"model": SimpleNamespace(blocks=2), "return_time": 1.0, "symmetry": None}
+        orbit = SimpleNamespace(reference=reference, stop_counts=here, **attributes)
         line = SimpleNamespace(
             coordinate=lambda model: 2e-6, model=lambda model, a: a, lower_bound=0.0, units=OwnUnits()
         )
         point = SimpleNamespace(orbit=orbit, line=line, tangent=np.array([4.0, -2.0, 0.0, 0.0, 0.0, -1.0]))
-        found = border_collision.switch_branch(point)
-        return found and found.orbit.stop_counts, tried, tangents
+        orbit_beyond = border_collision.switch_branch(point)
+        return orbit_beyond and orbit_beyond.orbit.stop_counts, tried, tangents
 
     return turned
 
@@ -213,8 +213,8 @@ def turn(monkeypatch):
 def test_beyond_a_corner_the_orbit_has_other_stops(turn):
     """The orbit may lie on either side; it must have stops that differ from before and not repeat a simpler orbit."""
     none, same, twice = (0, 0), (1, 2), (2, 2)
-    found, tried, tangents = turn([None, same, none, twice, (1, 1)], simple=(twice,))
-    assert found == (1, 1)
+    stops, tried, tangents = turn([None, same, none, twice, (1, 1)], simple=(twice,))
+    assert stops == (1, 1)
     assert tried == [(1e-5, 1, 0), (1e-5, -1, 0), (1e-4, 1, 0), (1e-4, -1, 0), (1e-6, 1, 0)]
     # The tangent is that of an orbit slightly farther on, at an a that is not negative.
     assert tangents == [(0.0, pytest.approx(0.50001), pytest.approx(0.249995))]
@@ -232,12 +232,12 @@ def test_which_branches_continue_from_a_symmetric_corner(turn, beyond, continues
 
 
 def test_a_branch_whose_other_side_is_not_found_ends(turn):
-    found, tried, tangents = turn([None] * 24)
-    assert found is None
+    stops, tried, tangents = turn([None] * 24)
+    assert stops is None
     assert tried == [
         (length, sign * k, 0) for k in (1, 2, 3) for length in (1e-5, 1e-4, 1e-6, 1e-7) for sign in (1, -1)
     ]
     assert [position for _, position, _ in tangents] == pytest.approx([0.50001, 0.5001, 0.500001], abs=1e-12)
     assert [a for a, *_ in tangents] == pytest.approx([0.0, 0.0, 1e-6], abs=1e-12)
-    found, tried, _ = turn([(1, 1)], lost=(1, 2))
-    assert (found, tried) == ((1, 1), [(1e-5, 3, 0)])
+    stops, tried, _ = turn([(1, 1)], lost=(1, 2))
+    assert (stops, tried) == ((1, 1), [(1e-5, 3, 0)])

@@ -23,12 +23,12 @@ def point(a, *, unstable=0, length=0.01, is_grazing=False, **look):
 
 def half(*points, end=None):
     """Return a half branch whose stable orbits end at an a, if it is given."""
-    found = HalfBranch([point(0.1, length=0.0), *points])
+    branch = HalfBranch([point(0.1, length=0.0), *points])
     bifurcations = [
         SimpleNamespace(a=a, loses_stability=lost) for a, lost in ((0.1, False), (end, True)) if a is not None
     ]
-    vars(found)["bifurcations"] = bifurcations
-    return found
+    vars(branch)["bifurcations"] = bifurcations
+    return branch
 
 
 def places(points):
@@ -40,7 +40,7 @@ def test_stable_orbits_end_at_the_first_loss_of_stability():
     downward = half(point(0.09), point(0.07, unstable=1), point(0.05))
     upward = half(point(0.11), point(0.13, unstable=1), point(0.15))
     ended = half(*downward.orbits[1:], end=0.08), half(*upward.orbits[1:], end=0.12)
-    assert [one.end and one.end.a for one in (*ended, downward, upward)] == [0.08, 0.12, None, None]
+    assert [part.end and part.end.a for part in (*ended, downward, upward)] == [0.08, 0.12, None, None]
     for low, high, expected in (
         (downward, upward, [0.05, 0.09, 0.1, 0.11, 0.15]),
         (ended[0], upward, [0.09, 0.1, 0.11, 0.15]),

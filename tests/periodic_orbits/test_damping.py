@@ -36,9 +36,9 @@ def test_dashpots_to_the_driver_shift_the_loss_of_synchrony():
     orbit, other = (synchronized_orbit(model) for model in (damped, Model(Chain(3), law_of("linearized", 0.08))))
     assert orbit.period == pytest.approx(other.period, rel=1e-13)
     assert np.allclose(multipliers(orbit).whole[:2], multipliers(other).whole[:2], rtol=1e-12)
-    (found,) = locate_bifurcations(follow(orbit, (0.07 + GAMMA, 0.1 + GAMMA)))
-    assert found.kind == BifurcationKind.PITCHFORK
-    assert found.a == pytest.approx(CRITICAL + GAMMA, abs=1e-11)
+    (bifurcation,) = locate_bifurcations(follow(orbit, (0.07 + GAMMA, 0.1 + GAMMA)))
+    assert bifurcation.kind == BifurcationKind.PITCHFORK
+    assert bifurcation.a == pytest.approx(CRITICAL + GAMMA, abs=1e-11)
 
 
 @pytest.fixture(scope="module")
@@ -55,9 +55,9 @@ def test_an_orbit_returns_by_scipy(orbit):
 
 
 def test_multipliers_are_those_of_differences(orbit):
-    found = differences(orbit.model, orbit.reference, orbit.period, 1e-5)
-    assert found is not None
-    expected = np.linalg.eigvals(found[0])
+    quotients = differences(orbit.model, orbit.reference, orbit.period, 1e-5)
+    assert quotients is not None
+    expected = np.linalg.eigvals(quotients[0])
     order = np.argsort(-np.abs(expected))[:4]
     whole = np.abs(multipliers(orbit).whole)
     # The flow has the multiplier 1, which is excluded.
@@ -82,8 +82,8 @@ def test_dashpots_grow_from_0_as_a_falls(start):
     assert branch[0].value == start
     assert branch[-1].value > 0.02
     assert len(branch) < 60
-    (found,) = locate_bifurcations(branch)
-    assert (found.kind, found.at.value) == (BifurcationKind.PITCHFORK, pytest.approx(0.0075, abs=2e-11))
+    (bifurcation,) = locate_bifurcations(branch)
+    assert (bifurcation.kind, bifurcation.at.value) == (BifurcationKind.PITCHFORK, pytest.approx(0.0075, abs=2e-11))
     for point in branch[::10]:
         plain = synchronized_orbit(Model(Chain(3), law_of("linearized", CRITICAL + 0.0075 - point.value)))
         assert point.orbit.period == pytest.approx(plain.period, rel=1e-11)
@@ -130,8 +130,8 @@ def test_derivatives_along_the_motion():
         values[0] for values in _derivatives(model, position[None], velocity[None], stuck[None])
     )
     slips = ~stuck
-    made = rate(model, ChainState(position, velocity, stuck))
-    assert np.allclose(made[4:][slips], acceleration[slips], rtol=1e-13)
+    derivative = rate(model, ChainState(position, velocity, stuck))
+    assert np.allclose(derivative[4:][slips], acceleration[slips], rtol=1e-13)
     step = 1e-6
     ahead = (position + step * (velocity - 0.2))[None], (velocity + step * np.where(stuck, 0.0, acceleration))[None]
     later = _derivatives(model, *ahead, stuck[None])

@@ -36,7 +36,11 @@ def end_of_synchrony(parameter, upward=True, model=MODEL):
         upward=upward,
         is_complete=lambda points: points[-1].multipliers.unstable_count > 0,
     )
-    return next(one for one in locate_bifurcations(branch) if one.loses_stability or not one.keeps_stability)
+    return next(
+        bifurcation
+        for bifurcation in locate_bifurcations(branch)
+        if bifurcation.loses_stability or not bifurcation.keeps_stability
+    )
 
 
 @pytest.fixture(scope="module")
@@ -107,10 +111,10 @@ def test_a_fold_in_the_mass_of_one_end_begins_at_the_pitchfork():
     # Longer steps would jump across the fold to the other orbit of the pair.
     short = ContinuationSettings(first_step=1e-5)
     (fold,) = [
-        one
+        bifurcation
         for upward in (True, False)
-        for one in locate_bifurcations(follow(pair, (0.999, 1.001), short, parameter="mass[3]", upward=upward))
-        if one.kind == BifurcationKind.FOLD and one.loses_stability
+        for bifurcation in locate_bifurcations(follow(pair, (0.999, 1.001), short, parameter="mass[3]", upward=upward))
+        if bifurcation.kind == BifurcationKind.FOLD and bifurcation.loses_stability
     ]
     steps = ContinuationSettings(first_step=1e-4, largest_step=1e-3, smallest_step=1e-7)
     mass, a = follow_bifurcation(fold, ("mass[3]", "a"), (0.086, 0.092), steps).values.T

@@ -14,9 +14,9 @@ NONE = np.array([])
 
 
 def test_multipliers_outside_the_unit_circle_are_unstable():
-    found = Multipliers(np.array([-1.5, 0.6 + 0.8j, 0.6 - 0.8j, 1.0, 0.1]), np.array([2.0, -0.7]), power=2)
-    assert found.unstable_count == 2
-    assert np.abs(found.whole) == pytest.approx([4.0, 2.25, 1.0, 1.0, 1.0, 0.49, 0.01])
+    spectrum = Multipliers(np.array([-1.5, 0.6 + 0.8j, 0.6 - 0.8j, 1.0, 0.1]), np.array([2.0, -0.7]), power=2)
+    assert spectrum.unstable_count == 2
+    assert np.abs(spectrum.whole) == pytest.approx([4.0, 2.25, 1.0, 1.0, 1.0, 0.49, 0.01])
 
 
 @pytest.mark.parametrize(
@@ -29,18 +29,18 @@ def test_multipliers_outside_the_unit_circle_are_unstable():
     ],
 )
 def test_a_symmetric_orbit_does_not_double_its_period_but_breaks_its_symmetry(symmetry, minus):
-    found = critical_values(SimpleNamespace(symmetry=symmetry), Multipliers(np.array([0.5, -0.25, 3.0]), NONE, 1))
+    values = critical_values(SimpleNamespace(symmetry=symmetry), Multipliers(np.array([0.5, -0.25, 3.0]), NONE, 1))
     expected = {
         (BifurcationKind.FOLD, "symmetry_preserving"): -0.5 * -1.25 * 2.0,
         (minus, "symmetry_preserving"): 1.5 * 0.75 * 4.0,
         (BifurcationKind.NEIMARK_SACKER, "symmetry_preserving"): -1.125 * 0.5 * -1.75,
     }
-    assert found == pytest.approx(expected)
+    assert values == pytest.approx(expected)
 
 
 def test_mirror_blocks_desynchronize_at_a_pitchfork():
     orbit = SimpleNamespace(symmetry=Symmetry.SYNCHRONIZED)
-    found = critical_values(orbit, Multipliers(np.array([0.5]), np.array([3.0, 0.2]), 1))
+    values = critical_values(orbit, Multipliers(np.array([0.5]), np.array([3.0, 0.2]), 1))
     expected = {
         (BifurcationKind.FOLD, "symmetry_preserving"): -0.5,
         (BifurcationKind.PERIOD_DOUBLING, "symmetry_preserving"): 1.5,
@@ -50,4 +50,4 @@ def test_mirror_blocks_desynchronize_at_a_pitchfork():
         (BifurcationKind.PERIOD_DOUBLING, "symmetry_breaking"): 4.0 * 1.2,
         (BifurcationKind.NEIMARK_SACKER, "symmetry_breaking"): -0.4,
     }
-    assert found == pytest.approx(expected)
+    assert values == pytest.approx(expected)

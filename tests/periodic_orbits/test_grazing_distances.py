@@ -34,9 +34,9 @@ from burridge_knopoff.running.runner import Runner
 def test_the_zero_of_a_cubic_is_found_from_its_ends(coefficients):
     cubic = np.polynomial.Polynomial(coefficients[::-1])
     assert cubic(0.0) * cubic(1.0) < 0.0
-    found = _root(cubic(np.array([0.0, 1.0])), cubic.deriv()(np.array([0.0, 1.0])))
-    assert 0.0 < found < 1.0
-    assert cubic(found) == pytest.approx(0.0, abs=1e-12)
+    root = _root(cubic(np.array([0.0, 1.0])), cubic.deriv()(np.array([0.0, 1.0])))
+    assert 0.0 < root < 1.0
+    assert cubic(root) == pytest.approx(0.0, abs=1e-12)
 
 
 def sample_orbit(orbit, count=200_000):
@@ -61,23 +61,23 @@ def six():
 
 
 def test_grazing_distances_agree_with_dense_samples(six):
-    found = grazing_distances(six)
+    distances = grazing_distances(six)
     position, velocity, stuck = sample_orbit(six, 40_000)
     step, model = six.period / 40_000, six.model
     for block in range(3):
         change = np.flatnonzero(np.diff(stuck[:, block].astype(int)))
         lengths = np.diff(change, append=change[0] + 40_000) * step
         sticks = stuck[change + 1, block]
-        assert found.stick[block] == pytest.approx(lengths[sticks].min(), abs=3 * step)
-        assert found.slip[block] == pytest.approx(lengths[~sticks].min(), abs=3 * step)
+        assert distances.stick[block] == pytest.approx(lengths[sticks].min(), abs=3 * step)
+        assert distances.slip[block] == pytest.approx(lengths[~sticks].min(), abs=3 * step)
         speed, slips = velocity[:, block], ~stuck[:, block]
         inner = slips[:-2] & slips[1:-1] & slips[2:] & (speed[1:-1] < speed[:-2]) & (speed[1:-1] < speed[2:])
-        assert found.speed[block] == pytest.approx(speed[1:-1][inner].min(initial=np.inf), abs=1e-6)
+        assert distances.speed[block] == pytest.approx(speed[1:-1][inner].min(initial=np.inf), abs=1e-6)
         force = model.chain.thresholds[block] * float(model.law(model.v)) - position @ model.chain.stiffness[block]
         peaks = ~slips[:-2] & ~slips[1:-1] & ~slips[2:] & (force[1:-1] > force[:-2]) & (force[1:-1] > force[2:])
-        assert found.force[block] == pytest.approx((1.0 - force[1:-1][peaks]).min(initial=np.inf), abs=1e-6)
-    assert np.isfinite(found.speed).any()
-    assert np.isinf(found.deceleration).all()
+        assert distances.force[block] == pytest.approx((1.0 - force[1:-1][peaks]).min(initial=np.inf), abs=1e-6)
+    assert np.isfinite(distances.speed).any()
+    assert np.isinf(distances.deceleration).all()
 
 
 def test_half_of_a_symmetric_orbit_gives_all_grazing_distances():
@@ -109,10 +109,10 @@ def test_grazing_distances_scale_with_the_units(six):
     stiff = Chain(3, coupling=900.0 * chain.coupling, pulling=tuple(900.0 * chain.driving))
     model = Model(stiff, law_of("linearized", 30.0 * six.a), six.model.v / 30.0)
     moved = ChainState(start.position / 900.0, start.velocity / 30.0, start.stuck)
-    found = grazing_distances(find_periodic_orbit(model, moved, six.return_time / 30.0, six.symmetry))
+    distances = grazing_distances(find_periodic_orbit(model, moved, six.return_time / 30.0, six.symmetry))
     expected = grazing_distances(six)
     for name, scale in {"stick": 30.0, "slip": 30.0, "speed": 30.0, "force": 1.0}.items():
-        assert scale * getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-5), name
+        assert scale * getattr(distances, name) == pytest.approx(getattr(expected, name), rel=1e-5), name
 
 
 def test_values_of_grazing_distances_vanish_linearly(six):
@@ -172,9 +172,9 @@ def test_where_friction_drops_slips_end_with_a_deceleration(dropping, contact):
             before = [runner.state_after(orbit.reference, time - step).velocity[block] for step in (1e-4, 2e-4)]
             along = np.sign(before[0])
             least[block] = min(least[block], along * (before[1] - before[0]) / 1e-4)
-    found = grazing_distances(orbit).deceleration
-    assert np.isfinite(found).any()
-    assert found == pytest.approx(least, abs=1e-3)
+    deceleration = grazing_distances(orbit).deceleration
+    assert np.isfinite(deceleration).any()
+    assert deceleration == pytest.approx(least, abs=1e-3)
 
 
 def test_a_reversal_is_not_a_short_stick():
@@ -191,8 +191,10 @@ def test_a_deceleration_grows_with_the_threshold(dropping):
     law, start = dropping.model.law, dropping.reference
     model = Model(Chain(3, threshold=3.0), law.at(law.a / 3.0), 3.0 * dropping.model.v)
     moved = ChainState(3.0 * start.position, 3.0 * start.velocity, start.stuck)
-    found = grazing_distances(find_periodic_orbit(model, moved, dropping.return_time, dropping.symmetry)).deceleration
-    assert found == pytest.approx(3.0 * grazing_distances(dropping).deceleration, rel=1e-6)
+    deceleration = grazing_distances(
+        find_periodic_orbit(model, moved, dropping.return_time, dropping.symmetry)
+    ).deceleration
+    assert deceleration == pytest.approx(3.0 * grazing_distances(dropping).deceleration, rel=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -232,10 +234,10 @@ def test_motion_with_backward_slip_or_pull_has_grazing_distances(threshold, posi
     motion = orbit_of(model, ChainState(*map(np.array, (position, velocity, stuck))), 6.0, Symmetry.ASYMMETRIC)
     at, rate, still = sample_orbit(motion, 3000)
     force = chain.thresholds * float(model.law(model.v)) - at @ chain.stiffness.T
-    found = grazing_distances(motion)
+    distances = grazing_distances(motion)
     for k in range(chain.blocks):
         slow = [peaks(-side * rate[:, k], ~still[:, k] & (side * rate[:, k] > 0.0)) for side in (1.0, -1.0)]
         pulled = [peaks(side * force[:, k], still[:, k]) for side in (1.0, -1.0)]
-        assert found.speed[k] == pytest.approx(-np.concatenate(slow).max(initial=-np.inf), abs=1e-3)
-        assert found.force[k] == pytest.approx(threshold[k] - np.concatenate(pulled).max(initial=-np.inf), abs=1e-3)
-    assert np.isfinite([*found.speed, *found.force]).any()
+        assert distances.speed[k] == pytest.approx(-np.concatenate(slow).max(initial=-np.inf), abs=1e-3)
+        assert distances.force[k] == pytest.approx(threshold[k] - np.concatenate(pulled).max(initial=-np.inf), abs=1e-3)
+    assert np.isfinite([*distances.speed, *distances.force]).any()

@@ -12,7 +12,7 @@ from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits, nearby_or
 
 
 @pytest.fixture
-def known():
+def branch():
     return KnownOrbits(synchronized_orbit(Model(Chain(3), law_of("linearized", 0.05))))
 
 
@@ -24,56 +24,56 @@ def asymmetric():
     return limit_cycle(model, start, settling=10_000.0)
 
 
-def test_steps_are_halved_until_the_orbit_is_found(known, monkeypatch):
-    (here,) = known.known
+def test_steps_are_halved_until_the_orbit_is_found(branch, monkeypatch):
+    (a_start,) = branch.orbits
     tried = []
 
     def near_only(orbit, a):
         tried.append(a)
-        if a - max(known.known) > 0.003:
+        if a - max(branch.orbits) > 0.003:
             raise OrbitError("too far")
         return nearby_orbit(orbit, a)
 
     monkeypatch.setattr(orbits_over_a, "nearby_orbit", near_only)
-    found = known.at(here + 0.02)
-    assert found.model.a == here + 0.02
-    assert tried[:3] == pytest.approx([here + 0.02, here + 0.01, here + 0.005])
+    continued = branch.at(a_start + 0.02)
+    assert continued.model.a == a_start + 0.02
+    assert tried[:3] == pytest.approx([a_start + 0.02, a_start + 0.01, a_start + 0.005])
     # The successful step length is kept.
     assert len(tried) == pytest.approx(3 + 0.02 / 0.0025, abs=1)
 
 
 def test_a_lost_orbit_is_an_error_after_the_smallest_step(asymmetric):
     """The branch has a turning point at a = 0.13247, before which steps are halved repeatedly."""
-    known = KnownOrbits(asymmetric)
+    branch = KnownOrbits(asymmetric)
     with pytest.raises(
         OrbitError, match=r"^a = 0\.1324\d+: no periodic orbit found .*, on the way to a = 0\.14$"
     ) as lost:
-        known.at(0.14)
-    found = list(known.known)
-    assert found[0] == 0.12
-    steps = np.log2(0.02 / np.diff(found))
+        branch.at(0.14)
+    values = list(branch.orbits)
+    assert values[0] == 0.12
+    steps = np.log2(0.02 / np.diff(values))
     assert steps == pytest.approx(np.round(steps), abs=1e-6)
     assert (np.diff(steps) > 0.5).all()
     tried = float(re.search(r"0\.1324\d+", str(lost.value))[0])
-    assert 1.0 <= (tried - found[-1]) / orbits_over_a.SMALLEST_STEP < 2.0
+    assert 1.0 <= (tried - values[-1]) / orbits_over_a.SMALLEST_STEP < 2.0
 
 
-def test_steps_become_as_short_as_the_stick(known, monkeypatch):
+def test_steps_become_as_short_as_the_stick(branch, monkeypatch):
     """The stick vanishes with a, and with it the range of convergence of Newton's method."""
-    known.known = {1e-4: known.at(1e-4)}
+    branch.orbits = {1e-4: branch.at(1e-4)}
 
     def near_only(orbit, a):
-        if min(abs(a - other) for other in known.known) > 3e-7:
+        if min(abs(a - other) for other in branch.orbits) > 3e-7:
             raise OrbitError("too far")
         return nearby_orbit(orbit, a)
 
     monkeypatch.setattr(orbits_over_a, "nearby_orbit", near_only)
-    assert known.at(0.99e-4).model.a == 0.99e-4
+    assert branch.at(0.99e-4).model.a == 0.99e-4
 
 
-def test_an_orbit_of_another_period_is_not_on_the_branch(known):
+def test_an_orbit_of_another_period_is_not_on_the_branch(branch):
     """From a guess that traverses the orbit twice, Newton's method converges to the doubled orbit."""
-    (orbit,) = known.known.values()
+    (orbit,) = branch.orbits.values()
     assert nearby_orbit(orbit, orbit.a + 1e-3).period == pytest.approx(orbit.period, rel=1e-2)
     with pytest.raises(OrbitError, match="no periodic orbit found near the guess"):
         nearby_orbit(orbit, 0.3)

@@ -140,8 +140,11 @@ def test_a_parameter_of_a_law_passes_through_0():
     law = FormulaLaw(0.09, "1 - a*u + b*u", b=-1e-4)
     branch = follow(synchronized_orbit(Model(Chain(3), law)), (-0.01, 0.01), parameter="b")
     assert (branch[0].value, branch[-1].value > 0.01, len(branch) < 40) == (-1e-4, True, True)
-    (found,) = locate_bifurcations(branch)
-    assert (found.kind, found.value) == (BifurcationKind.PITCHFORK, pytest.approx(0.09 - CRITICAL, abs=2e-11))
+    (bifurcation,) = locate_bifurcations(branch)
+    assert (bifurcation.kind, bifurcation.value) == (
+        BifurcationKind.PITCHFORK,
+        pytest.approx(0.09 - CRITICAL, abs=2e-11),
+    )
     stribeck = Model(Chain(3), law_of("stribeck", 0.05, {"eta": 0.0}))
     branch = follow(synchronized_orbit(stribeck), (0.0, 0.02), parameter="eta")
     assert branch[-1].value > 0.02
@@ -212,9 +215,9 @@ def test_a_long_orbit_meets_the_same_grazings_along_the_threshold():
     along_a = next(locate_bifurcations(follow(orbit, settings=few)))
     branch = follow(orbit, settings=few, parameter="threshold")
     assert all(abs(point.orbit.period - orbit.period) < 0.1 for point in branch)
-    found = next(locate_bifurcations(branch))
-    assert (found.kind, found.parameter, found.a) == (BifurcationKind.GRAZING, "threshold", 0.0813)
-    assert 0.0813 * found.value == pytest.approx(along_a.a, abs=1e-9)
+    bifurcation = next(locate_bifurcations(branch))
+    assert (bifurcation.kind, bifurcation.parameter, bifurcation.a) == (BifurcationKind.GRAZING, "threshold", 0.0813)
+    assert 0.0813 * bifurcation.value == pytest.approx(along_a.a, abs=1e-9)
 
 
 def test_only_the_scale_of_an_orbit_changes_with_v_under_the_linearized_law():
@@ -224,7 +227,7 @@ def test_only_the_scale_of_an_orbit_changes_with_v_under_the_linearized_law():
     for point in branch:
         assert point.orbit.period == pytest.approx(orbit.period, abs=1e-10)
         assert multipliers(point.orbit).whole == pytest.approx(multipliers(orbit).whole, abs=1e-8)
-        stops = [one.start(0).position / one.model.v for one in (point.orbit, orbit)]
+        stops = [item.start(0).position / item.model.v for item in (point.orbit, orbit)]
         assert stops[0] == pytest.approx(stops[1], abs=1e-8)
 
 

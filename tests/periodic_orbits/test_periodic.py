@@ -31,13 +31,13 @@ VELOCITY = {"symmetric": (0.0, 0.101, 0.189)}
 
 @pytest.fixture(scope="module")
 def orbits():
-    found = {}
+    settled = {}
     for name, (chain, law, a, position, *_) in ORBITS.items():
         model = Model(chain, law_of(law, a))
         velocity = VELOCITY.get(name, tuple(0.1 + 0.001 * k for k in range(chain.blocks)))
         end = Runner(model).state_after(model.begin(InitialState("one", position, velocity)), 20_000.0)
-        found[name] = limit_cycle(model, end)
-    return found
+        settled[name] = limit_cycle(model, end)
+    return settled
 
 
 def displaced_return(orbit, direction, size):
@@ -56,9 +56,9 @@ def test_the_orbit_of_a_settled_motion_returns_and_attracts(orbits, name):
     assert orbit.residual < 1e-12
     assert (orbit.symmetry, orbit.stop_counts) == ORBITS[name][4:]
     assert (float(orbit.model.law(0.0)) < 1.0) == (name == "friction that drops")
-    found = multipliers(orbit)
-    assert found.unstable_count == 0
-    assert len(found.whole) == 2 * orbit.model.blocks - 1
+    spectrum = multipliers(orbit)
+    assert spectrum.unstable_count == 0
+    assert len(spectrum.whole) == 2 * orbit.model.blocks - 1
     # The monodromy agrees with finite differences.
     basis = allowed_directions(orbit.reference.stuck, ASYMMETRIC)
     difference = [(displaced_return(orbit, d, 1e-6) - displaced_return(orbit, d, -1e-6)) / 2e-6 for d in basis.T]
@@ -74,19 +74,19 @@ def test_the_reference_is_in_the_middle_of_the_longest_time_without_events(orbit
     ends = [times[gaps.argmax()] + since + late for since in (0.0, gaps.max()) for late in (0.0, 1e-9)]
     guesses = [Runner(orbit.model).state_after(orbit.reference, time) for time in ends]
     for guess in (*guesses, *(orbit.start(block) for block in np.flatnonzero(orbit.stop_counts))):
-        found = find_periodic_orbit(orbit.model, guess, orbit.return_time, orbit.symmetry)
-        around = [found.events[0][0], found.period - found.events[-1][0]]
+        solution = find_periodic_orbit(orbit.model, guess, orbit.return_time, orbit.symmetry)
+        around = [solution.events[0][0], solution.period - solution.events[-1][0]]
         assert around == pytest.approx([0.5 * gaps.max()] * 2, abs=1e-9)
 
 
 @pytest.mark.parametrize("a", [0.02, 0.036, 0.08, 0.15, 0.3])
 def test_the_symmetry_of_an_orbit_changes_none_of_its_multipliers(families, law, a):
-    known = families[law].at(a)
-    orbit = find_periodic_orbit(known.model, known.reference, known.period, ASYMMETRIC)
-    assert orbit.period == pytest.approx(known.period, abs=1e-11)
-    found, expected = multipliers(orbit), multipliers(known)
-    assert np.sort(np.abs(found.whole)) == pytest.approx(np.sort(np.abs(expected.whole)), abs=1e-7)
-    assert np.isnan(found.transverse)
+    synchronized = families[law].at(a)
+    orbit = find_periodic_orbit(synchronized.model, synchronized.reference, synchronized.period, ASYMMETRIC)
+    assert orbit.period == pytest.approx(synchronized.period, abs=1e-11)
+    spectrum, expected = multipliers(orbit), multipliers(synchronized)
+    assert np.sort(np.abs(spectrum.whole)) == pytest.approx(np.sort(np.abs(expected.whole)), abs=1e-7)
+    assert np.isnan(spectrum.transverse)
 
 
 def test_how_long_blocks_stick(orbits):
@@ -101,9 +101,9 @@ def test_how_long_blocks_stick(orbits):
 
 def test_a_refined_orbit_is_solved_to_rounding(orbits):
     for orbit in orbits.values():
-        found = refine_orbit(orbit)
-        assert found.residual <= max(orbit.residual, 2e-14)
-        assert found.period == pytest.approx(orbit.period, abs=1e-10)
+        refined = refine_orbit(orbit)
+        assert refined.residual <= max(orbit.residual, 2e-14)
+        assert refined.period == pytest.approx(orbit.period, abs=1e-10)
 
 
 def test_uniform_sliding_is_not_an_orbit(families, law):
@@ -126,13 +126,13 @@ def test_the_half_of_a_symmetric_orbit_gives_the_whole(orbits):
 def test_an_orbit_traversed_twice_is_detected(orbits):
     half = orbits["symmetric"]
     twice = find_periodic_orbit(half.model, half.reference, 2.0 * half.period, ASYMMETRIC)
-    found = minimal_form(twice, 1e-9)
-    assert (found.symmetry, found.stop_counts) == (SYMMETRIC, half.stop_counts)
+    reduced = minimal_form(twice, 1e-9)
+    assert (reduced.symmetry, reduced.stop_counts) == (SYMMETRIC, half.stop_counts)
     assert minimal_form(half, 1e-9) is half
-    known = orbits["synchronized"]
-    twice = find_periodic_orbit(known.model, known.reference, 2.0 * known.period, SYNCHRONIZED)
+    synchronized = orbits["synchronized"]
+    twice = find_periodic_orbit(synchronized.model, synchronized.reference, 2.0 * synchronized.period, SYNCHRONIZED)
     assert twice.stop_counts == (2, 2, 2)
-    assert minimal_form(twice, 1e-9).period == pytest.approx(known.period, abs=1e-12)
+    assert minimal_form(twice, 1e-9).period == pytest.approx(synchronized.period, abs=1e-12)
     # An orbit that is its mirror image after half a period is so after three halves as well, but not after two.
     thrice = find_periodic_orbit(half.model, half.reference, 3.0 * half.return_time, SYMMETRIC)
     assert thrice.stop_counts == (3, 0, 3)
@@ -176,8 +176,8 @@ def test_guesses_that_do_not_lead_to_an_orbit_are_refused(orbits):
 @pytest.mark.parametrize("name", ORBITS)
 def test_forgotten_events_are_recomputed(orbits, name):
     orbit = orbits[name]
-    known, signature = orbit.event_rows, orbit.stop_counts
+    rows, signature = orbit.event_rows, orbit.stop_counts
     orbit.forget_events()
     assert orbit.stop_counts == signature
-    assert orbit.event_rows is not known
-    assert np.array_equal(orbit.event_rows, known)
+    assert orbit.event_rows is not rows
+    assert np.array_equal(orbit.event_rows, rows)

@@ -40,13 +40,13 @@ def test_the_branch_is_the_attractor_beyond(families, critical, law):
 def test_the_pitchfork(families, critical, law):
     """Offsets are positive and grow as d² up to the next even order; the multipliers agree with the normal form."""
     d = np.array([2e-4, 4e-4, 8e-4])
-    found = [branching_orbit(critical[law], float(value)) for value in d]
-    offset = np.array([orbit.a for orbit in found]) - critical[law].a
+    branch = [branching_orbit(critical[law], float(value)) for value in d]
+    offset = np.array([orbit.a for orbit in branch]) - critical[law].a
     assert (offset > 0.0).all()
     assert offset / d**2 == pytest.approx(offset[2] / d[2] ** 2, rel=3e-5)
     # Near a pitchfork the decay rate on the branch is twice the growth rate of the central orbit.
-    gains = [multipliers(families[law].at(orbit.a)).transverse.real - 1.0 for orbit in found]
-    losses = [1.0 - abs(multipliers(orbit).whole[0]) for orbit in found]
+    gains = [multipliers(families[law].at(orbit.a)).transverse.real - 1.0 for orbit in branch]
+    losses = [1.0 - abs(multipliers(orbit).whole[0]) for orbit in branch]
     assert np.array(losses) / gains == pytest.approx(2.0, rel=2e-3)
 
 
@@ -58,9 +58,9 @@ def test_an_orbit_does_not_depend_on_the_guess(critical, law):
 
 
 def test_mirror_images_exist_together(critical):
-    one, other = (branching_orbit(critical["linearized"], side * 5e-3) for side in (1, -1))
-    assert one.a == pytest.approx(other.a, abs=1e-13)
-    assert one.reference.mirrored().vector() == pytest.approx(other.reference.vector(), abs=1e-12)
+    first, second = (branching_orbit(critical["linearized"], side * 5e-3) for side in (1, -1))
+    assert first.a == pytest.approx(second.a, abs=1e-13)
+    assert first.reference.mirrored().vector() == pytest.approx(second.reference.vector(), abs=1e-12)
 
 
 def test_an_asymmetry_beyond_the_branch_is_refused(critical):

@@ -57,9 +57,9 @@ def test_the_derivative_by_a_is_that_of_the_same_events_of_each_block(monkeypatc
 
     monkeypatch.setattr(return_map, "Runner", runner)
     mapping = ReturnMap(model, Symmetry.ASYMMETRIC)
-    found = mapping.parameter_derivative(end, 1.0, end, np.array([[0, 0], [1, 0]]), line_along_a(model.chain))
+    derivative = mapping.parameter_derivative(end, 1.0, end, np.array([[0, 0], [1, 0]]), line_along_a(model.chain))
     # The last run is at an a smaller by 1e-8.
-    assert found == pytest.approx([3.0, 3.0, 3.0, 0.0, 0.0, 0.0])
+    assert derivative == pytest.approx([3.0, 3.0, 3.0, 0.0, 0.0, 0.0])
     monkeypatch.setattr(return_map, "Runner", lambda model, keep_events: ran([], end))
     assert (
         mapping.parameter_derivative(end, 1.0, end, np.zeros((0, 2)), line_along_a(model.chain)).tolist() == [0.0] * 6

@@ -44,14 +44,14 @@ def test_the_state_returns_and_its_multiplier_in_closed_form(families, law, a):
     assert orbit.symmetry == Symmetry.SYNCHRONIZED
     assert orbit.reference.position[0] == orbit.reference.position[2]
     assert (orbit.stop_counts[0], orbit.stop_counts[2]) == (1, 1)
-    found = multipliers(orbit)
+    spectrum = multipliers(orbit)
     # The multipliers of the velocities of the end blocks, which a stop removes.
-    assert abs(found.symmetry_breaking[1]) < 1e-12
-    assert np.abs(found.symmetry_preserving).min() < 1e-12
+    assert abs(spectrum.symmetry_breaking[1]) < 1e-12
+    assert np.abs(spectrum.symmetry_preserving).min() < 1e-12
     if law == "linearized":
         time, omega = orbit.period - orbit.stick_time(0), np.sqrt(2.0 - 0.25 * a * a)
         closed = np.exp(0.5 * a * time) * (np.cos(omega * time) - 0.5 * a / omega * np.sin(omega * time))
-        assert found.symmetry_breaking[0] == pytest.approx(closed, abs=1e-12)
+        assert spectrum.symmetry_breaking[0] == pytest.approx(closed, abs=1e-12)
 
 
 @pytest.mark.parametrize("a", [0.02, 0.08, 0.15])
@@ -88,9 +88,9 @@ def test_multipliers_against_finite_differences(families, law, a):
 
 
 def test_a_run_from_the_initial_state_ends_on_the_orbit(families, law):
-    found = turns(simulate(law, 0.05, "minus", transient=4000.0, window=200.0))
-    assert found == pytest.approx(families[law].at(0.05).period, abs=1e-10)
-    assert len(found) >= 30
+    periods = turns(simulate(law, 0.05, "minus", transient=4000.0, window=200.0))
+    assert periods == pytest.approx(families[law].at(0.05).period, abs=1e-10)
+    assert len(periods) >= 30
 
 
 def test_small_a_is_a_grazing_normal_mode(families, law):
@@ -148,8 +148,8 @@ def test_chains_of_any_length_have_the_orbit(law, blocks):
     orbit = synchronized_orbit(Model(Chain(blocks), law_of(law, 0.08)))
     assert orbit.symmetry == Symmetry.SYNCHRONIZED
     assert orbit.residual <= 1e-14
-    found = multipliers(orbit)
-    assert finite_difference_multiplier(orbit) == pytest.approx(found.transverse, abs=1e-9)
+    spectrum = multipliers(orbit)
+    assert finite_difference_multiplier(orbit) == pytest.approx(spectrum.transverse, abs=1e-9)
     shift = np.zeros(2 * blocks)
     shift[0] = 1e-7
     start = ChainState(*np.split(orbit.reference.vector() + shift, 2), orbit.reference.stuck)
@@ -157,7 +157,7 @@ def test_chains_of_any_length_have_the_orbit(law, blocks):
     for turns_made in (40, 80):
         end = Runner(orbit.model).state_after(start, turns_made * orbit.period).vector()
         parted.append(np.abs(end - end[[*range(blocks)[::-1], *range(blocks, 2 * blocks)[::-1]]]).max())
-    assert (parted[1] > parted[0]) == (abs(found.transverse) > 1.0)
+    assert (parted[1] > parted[0]) == (abs(spectrum.transverse) > 1.0)
 
 
 def test_there_is_no_orbit_outside_the_range_of_a_law():
@@ -195,9 +195,9 @@ def test_exact_synchrony_doubles_its_period_where_a_symmetric_multiplier_passes(
         initial = InitialState("near", position, velocity)
         run = simulate(law, a, initial, transient=10000.0, window=100.0, batches=2)
         assert run.mean_distance < 1e-12
-        found = turns(run)
-        assert found[2:] == pytest.approx(found[:-2], abs=1e-6)
-        assert (abs(found[1] - found[0]) > 0.05) == doubled
+        periods = turns(run)
+        assert periods[2:] == pytest.approx(periods[:-2], abs=1e-6)
+        assert (abs(periods[1] - periods[0]) > 0.05) == doubled
 
 
 @pytest.mark.parametrize("coupling", [0.7, 1.2, 1.5, 2.0])

@@ -49,8 +49,8 @@ def test_the_bifurcations_of_the_papers_orbits(bifurcations, law):
 
 def test_critical_a_has_the_proved_digits(critical):
     """The digits are those proved in `proof`."""
-    known = {"linearized": 0.0869729046660773, "nonlinear": 0.0887172229711765}
-    assert critical == pytest.approx(known, abs=1e-14)
+    proved = {"linearized": 0.0869729046660773, "nonlinear": 0.0887172229711765}
+    assert critical == pytest.approx(proved, abs=1e-14)
 
 
 def test_critical_a_in_exact_arithmetic(families, critical, law):
@@ -109,9 +109,9 @@ def test_bifurcations_around_a_gap_of_the_orbit_are_found(families, critical, mo
         return follow(orbit, (low, high), settings, upward=upward)
 
     monkeypatch.setattr(synchronized_bifurcations, "follow", broken_off)
-    found = bifurcations_of(Partly(families["linearized"].at(0.08)))
-    assert critical_a(found) == pytest.approx(critical["linearized"], abs=1e-14)
-    assert np.isfinite(grazing_a(found, block=1))
+    located = bifurcations_of(Partly(families["linearized"].at(0.08)))
+    assert critical_a(located) == pytest.approx(critical["linearized"], abs=1e-14)
+    assert np.isfinite(grazing_a(located, block=1))
 
 
 @pytest.mark.parametrize("a", [0.02, 0.09, 0.2])
@@ -149,20 +149,22 @@ def test_transitions_are_found_on_the_scale_of_the_chain(critical, bifurcations,
     orbits = synchronized_orbits(Model(Chain(3, threshold=threshold, **springs), law_of("linearized", 0.0)))
     factor = strength**0.5 / threshold
     assert a_unit(orbits.model.chain) == pytest.approx(factor)
-    found = bifurcations_of(orbits)
-    assert critical_a(found) == pytest.approx(factor * critical["linearized"], rel=1e-9)
-    assert grazing_a(found, block=1) == pytest.approx(factor * grazing_a(bifurcations["linearized"], block=1), rel=1e-9)
-    assert critical_a_error(orbits, critical_a(found)) < 1e-10 * factor
+    located = bifurcations_of(orbits)
+    assert critical_a(located) == pytest.approx(factor * critical["linearized"], rel=1e-9)
+    assert grazing_a(located, block=1) == pytest.approx(
+        factor * grazing_a(bifurcations["linearized"], block=1), rel=1e-9
+    )
+    assert critical_a_error(orbits, critical_a(located)) < 1e-10 * factor
 
 
 def test_two_blocks_desynchronize_in_a_period_doubling():
     """Each block does in one period what the other does in the next, so that the transverse multiplier is −1."""
     orbits = synchronized_orbits(Model(Chain(2), law_of("linearized", 0.05)))
-    found = bifurcations_of(orbits)
-    a = critical_a(found)
+    located = bifurcations_of(orbits)
+    a = critical_a(located)
     assert multipliers(orbits.at(a)).transverse == pytest.approx(-1.0, abs=1e-12)
     # It is not a period doubling of synchronized motion.
-    assert np.isnan(symmetric_period_doubling_a(found))
+    assert np.isnan(symmetric_period_doubling_a(located))
 
 
 def test_five_blocks_desynchronize_where_the_leading_multiplier_is_1():

@@ -60,11 +60,11 @@ def branch():
 @pytest.mark.parametrize("time", [2.0**10, 2.0**-9])
 def test_the_synchronized_orbit_is_the_same_to_the_bit(time):
     """For units in which v and a have the same values; otherwise rounding differs."""
-    one, other = synchronized_orbit(paper()), synchronized_orbit(paper(time, time))
-    assert other.period == one.period * time
-    assert (other.reference.position == one.reference.position * time).all()
-    assert (other.reference.velocity == one.reference.velocity).all()
-    assert multipliers(other).transverse == pytest.approx(multipliers(one).transverse, abs=1e-14)
+    paper_orbit, scaled_orbit = synchronized_orbit(paper()), synchronized_orbit(paper(time, time))
+    assert scaled_orbit.period == paper_orbit.period * time
+    assert (scaled_orbit.reference.position == paper_orbit.reference.position * time).all()
+    assert (scaled_orbit.reference.velocity == paper_orbit.reference.velocity).all()
+    assert multipliers(scaled_orbit).transverse == pytest.approx(multipliers(paper_orbit).transverse, abs=1e-14)
 
 
 @pytest.mark.parametrize(
@@ -73,11 +73,11 @@ def test_the_synchronized_orbit_is_the_same_to_the_bit(time):
     [(*units, "linearized") for units in UNITS] + [(2.0**10, 2.0**10, "nonlinear"), (2.0**-9, 2.0**-9, "nonlinear")],
 )
 def test_the_synchronized_orbit_scales(time, length, law):
-    one, other = synchronized_orbit(paper(law=law)), synchronized_orbit(paper(time, length, law=law))
-    assert other.period / time == pytest.approx(one.period, abs=1e-11)
-    assert other.reference.position / length == pytest.approx(one.reference.position, abs=1e-11)
-    assert abs(multipliers(other).whole) == pytest.approx(abs(multipliers(one).whole), abs=1e-10)
-    assert finite_difference_multiplier(other) == pytest.approx(multipliers(one).transverse, abs=1e-9)
+    paper_orbit, scaled_orbit = synchronized_orbit(paper(law=law)), synchronized_orbit(paper(time, length, law=law))
+    assert scaled_orbit.period / time == pytest.approx(paper_orbit.period, abs=1e-11)
+    assert scaled_orbit.reference.position / length == pytest.approx(paper_orbit.reference.position, abs=1e-11)
+    assert abs(multipliers(scaled_orbit).whole) == pytest.approx(abs(multipliers(paper_orbit).whole), abs=1e-10)
+    assert finite_difference_multiplier(scaled_orbit) == pytest.approx(multipliers(paper_orbit).transverse, abs=1e-9)
 
 
 def test_a_chain_a_thousand_times_as_slow_has_its_orbit():
@@ -85,8 +85,8 @@ def test_a_chain_a_thousand_times_as_slow_has_its_orbit():
     chain = Chain(3, coupling=0.001, pulling=(0.001, 0.002, 0.001), mass=1000.0)
     orbit = synchronized_orbit(Model(chain, law_of("linearized", 0.08)))
     assert orbit.period == pytest.approx(1000.0 * synchronized_orbit(paper()).period, rel=1e-12)
-    found = limit_cycle(orbit.model, orbit.model.begin(InitialState("own", (-900.0, -1100.0, -900.0), 0.1)), 2e6)
-    assert found.period == pytest.approx(orbit.period, rel=1e-12)
+    slow_orbit = limit_cycle(orbit.model, orbit.model.begin(InitialState("own", (-900.0, -1100.0, -900.0), 0.1)), 2e6)
+    assert slow_orbit.period == pytest.approx(orbit.period, rel=1e-12)
 
 
 @pytest.mark.parametrize("mass", [1.0, 2.0**-18])
@@ -104,36 +104,36 @@ def test_a_fast_chain_takes_no_longer(monkeypatch, mass):
 @pytest.mark.parametrize(("time", "length"), UNITS)
 def test_an_orbit_that_a_motion_settles_on_scales(time, length):
     model = paper(time, length)
-    found = limit_cycle(model, asymmetric_state(model, time, length), settling=4000.0 * time)
-    one = limit_cycle(paper(), asymmetric_state(paper(), 1.0, 1.0), settling=4000.0)
-    assert (found.symmetry, found.stop_counts) == (one.symmetry, one.stop_counts)
-    assert found.period / time == pytest.approx(one.period, abs=1e-11)
+    scaled_orbit = limit_cycle(model, asymmetric_state(model, time, length), settling=4000.0 * time)
+    paper_orbit = limit_cycle(paper(), asymmetric_state(paper(), 1.0, 1.0), settling=4000.0)
+    assert (scaled_orbit.symmetry, scaled_orbit.stop_counts) == (paper_orbit.symmetry, paper_orbit.stop_counts)
+    assert scaled_orbit.period / time == pytest.approx(paper_orbit.period, abs=1e-11)
 
 
 @pytest.mark.parametrize(("time", "length"), UNITS)
 def test_a_branch_scales(branch, time, length):
-    one, other = branch(), branch(time, length)
-    assert len(other) == len(one)
-    for first, second in zip(one, other, strict=True):
+    paper_branch, scaled_branch = branch(), branch(time, length)
+    assert len(scaled_branch) == len(paper_branch)
+    for first, second in zip(paper_branch, scaled_branch, strict=True):
         assert second.orbit.a * length / time == pytest.approx(first.orbit.a, abs=1e-9)
         assert second.orbit.period / time == pytest.approx(first.orbit.period, abs=1e-9)
         assert second.grazing_distances.in_own_units(second.orbit.model.chain.own_units) == pytest.approx(
             first.grazing_distances.values(), rel=1e-6
         )
-    (pitchfork,), (found,) = locate_bifurcations(one), locate_bifurcations(other)
-    assert found.kind == pitchfork.kind
-    assert found.a * length / time == pytest.approx(pitchfork.a, abs=1e-10)
-    curve = follow_bifurcation(found, ("a", "v"), (0.0999 * length / time, 0.1001 * length / time))
-    assert curve.values[:, 0] * length / time == pytest.approx(found.a * length / time, abs=1e-9)
+    (pitchfork,), (scaled_pitchfork,) = locate_bifurcations(paper_branch), locate_bifurcations(scaled_branch)
+    assert scaled_pitchfork.kind == pitchfork.kind
+    assert scaled_pitchfork.a * length / time == pytest.approx(pitchfork.a, abs=1e-10)
+    curve = follow_bifurcation(scaled_pitchfork, ("a", "v"), (0.0999 * length / time, 0.1001 * length / time))
+    assert curve.values[:, 0] * length / time == pytest.approx(scaled_pitchfork.a * length / time, abs=1e-9)
     along = (
         follow(points[0].orbit, (0.95 / size, 1.0 / size), parameter="coupling", upward=False)
-        for points, size in ((one, 1.0), (other, length))
+        for points, size in ((paper_branch, 1.0), (scaled_branch, length))
     )
     first, second = ([point.value for point in points] for points in along)
     assert np.array(second) * length == pytest.approx(np.array(first), abs=1e-7)
     damping = (
         follow(points[0].orbit, (0.0, 1e-3 * size), parameter="pulling_damping")
-        for points, size in ((one, 1.0), (other, time / length))
+        for points, size in ((paper_branch, 1.0), (scaled_branch, time / length))
     )
     first, second = ([point.value for point in points] for points in damping)
     assert np.array(second) * length / time == pytest.approx(np.array(first), abs=1e-9)
@@ -141,22 +141,22 @@ def test_a_branch_scales(branch, time, length):
 
 @pytest.mark.parametrize(("time", "length"), [(2.0**10, 2.0**10), (2.0**-9, 2.0**-18), (8.0, 0.125)])
 def test_bifurcations_of_the_synchronized_orbit_scale(time, length):
-    found = []
+    values = []
     for units in ((1.0, 1.0), (time, length)):
         orbits = synchronized_orbits(paper(*units))
         bifurcations, slope = bifurcations_of(orbits), units[0] / units[1]
         critical = critical_a(bifurcations)
         beyond = branching_orbit(orbits.at(critical), 1e-3 * units[1])
-        found.append([critical / slope, grazing_a(bifurcations, 1) / slope, (beyond.a - critical) / slope * 1e4])
-    assert found[1] == pytest.approx(found[0], abs=1e-8)
+        values.append([critical / slope, grazing_a(bifurcations, 1) / slope, (beyond.a - critical) / slope * 1e4])
+    assert values[1] == pytest.approx(values[0], abs=1e-8)
 
 
 @pytest.mark.parametrize(("time", "length"), UNITS)
 def test_a_transverse_exponent_scales(time, length):
     model = paper(time, length)
-    one = np.array(transverse_exponent(paper(), asymmetric_state(paper(), 1.0, 1.0)))
+    expected = np.array(transverse_exponent(paper(), asymmetric_state(paper(), 1.0, 1.0)))
     state = asymmetric_state(model, time, length)
     for times in ((), (200.0 * time, 2500.0 * time)):
-        assert np.array(transverse_exponent(model, state, *times)) * time == pytest.approx(one, abs=1e-10)
+        assert np.array(transverse_exponent(model, state, *times)) * time == pytest.approx(expected, abs=1e-10)
     with pytest.raises(ValueError, match="^window: got"):
         transverse_exponent(model, state, window=49.0 * time)

@@ -35,17 +35,17 @@ def follow(unknown, a):
     x, y, *times = unknown
     state = mp.matrix([x, y, x, -1, -1, -1, 1])
     tangent = mp.eye(7)
-    found = []
+    margins = []
     for (slips, block), time in zip(ARCS, times, strict=True):
         step = mp.expm(matrix(slips, a) * time, method="taylor")
         state, tangent = step * state, step * tangent
-        found.append(state[3 + block] + 1 if slips[block] else force(state, block, a))
+        margins.append(state[3 + block] + 1 if slips[block] else force(state, block, a))
         if slips[block]:
             for i in (block, 2 - block):
                 state[3 + i] = -1
                 for k in range(7):
                     tangent[3 + i, k] = 0
-    return found, state, tangent
+    return margins, state, tangent
 
 
 @dataclass
@@ -66,17 +66,17 @@ def exact_orbit(guess, a):
     with mpmath.workdps(DIGITS):
 
         def equations(*unknown):
-            own = mpf(a) if a is not None else unknown[6]
-            found, state, tangent = follow(unknown[:6], own)
-            values = [*found, state[0] - unknown[0], state[1] - unknown[1]]
+            a_value = mpf(a) if a is not None else unknown[6]
+            margins, state, tangent = follow(unknown[:6], a_value)
+            values = [*margins, state[0] - unknown[0], state[1] - unknown[1]]
             return values if a is not None else [*values, transverse(tangent) - 1]
 
         solution = list(mpmath.findroot(equations, [mpf(value) for value in guess], tol=mpf(10) ** (8 - 2 * DIGITS)))
-        own = mpf(a) if a is not None else solution[6]
-        tangent = follow(solution[:6], own)[2]
+        a_value = mpf(a) if a is not None else solution[6]
+        tangent = follow(solution[:6], a_value)[2]
         # The derivative of x_1 − x_2 with respect to x_1 = x_3.
         symmetric = tangent[0, 0] + tangent[0, 2] - tangent[1, 0] - tangent[1, 2]
-        return Exact(own, solution[:6], transverse(tangent), symmetric)
+        return Exact(a_value, solution[:6], transverse(tangent), symmetric)
 
 
 def transverse(tangent):

@@ -47,9 +47,9 @@ def test_a_small_difference_is_that_of_two_motions(slips):
         apart[0], apart[2] = exact[0] + mpf("0.45"), exact[2] - mpf("0.45")
         if slips[0]:
             apart[3], apart[5] = exact[3] + mpf("0.1"), exact[5] - mpf("0.1")
-        found = mp.expm(matrix((slips[0], slips[1], slips[0]), mpf("0.1")) * mpf("1.7"), method="taylor") * apart
-        assert holds(arb(end.difference[0]), found[0] - found[2])
-        assert holds(arb(end.difference[1]), found[3] - found[5])
+        difference = mp.expm(matrix((slips[0], slips[1], slips[0]), mpf("0.1")) * mpf("1.7"), method="taylor") * apart
+        assert holds(arb(end.difference[0]), difference[0] - difference[2])
+        assert holds(arb(end.difference[1]), difference[3] - difference[5])
 
 
 def test_an_event_takes_the_velocity_away_only_where_a_block_stops():

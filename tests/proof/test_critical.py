@@ -18,7 +18,7 @@ from tests.proof.exact import exact_orbit
 
 
 @pytest.fixture(scope="module")
-def found(family):
+def critical_orbit(family):
     return prove_critical(family.at(critical_a(bifurcations_of(family))))
 
 
@@ -27,29 +27,29 @@ def branch(family):
     return prove_branch(family.at(0.086), fmpq(86, 1000), fmpq(88, 1000))
 
 
-def test_the_interval_contains_a_c_of_50_digits_and_of_double_precision(found, family):
-    guess = [float(value) for value in (*found.orbit.enclosure.inner, found.a)]
+def test_the_interval_contains_a_c_of_50_digits_and_of_double_precision(critical_orbit, family):
+    guess = [float(value) for value in (*critical_orbit.orbit.enclosure.inner, critical_orbit.a)]
     exact = exact_orbit(guess, None)
-    assert holds(found.a, exact.a)
-    for ball, number in zip(found.orbit.enclosure.inner, exact.unknown, strict=True):
+    assert holds(critical_orbit.a, exact.a)
+    for ball, number in zip(critical_orbit.orbit.enclosure.inner, exact.unknown, strict=True):
         assert holds(ball, number)
-    assert holds(found.orbit.symmetric_multiplier, exact.symmetric)
-    assert width(found.a) < 1e-50
-    assert abs(critical_a(bifurcations_of(family)) - float(found.a)) < 2e-15
+    assert holds(critical_orbit.orbit.symmetric_multiplier, exact.symmetric)
+    assert width(critical_orbit.a) < 1e-50
+    assert abs(critical_a(bifurcations_of(family)) - float(critical_orbit.a)) < 2e-15
 
 
-def test_the_multiplier_passes_1_at_a_c(found, family):
-    assert found.orbit.multiplier.contains(1)
-    assert width(found.orbit.multiplier) < 1e-45
+def test_the_multiplier_passes_1_at_a_c(critical_orbit, family):
+    assert critical_orbit.orbit.multiplier.contains(1)
+    assert width(critical_orbit.orbit.multiplier) < 1e-45
     for side, below in ((-1e-12, True), (1e-12, False)):
         with arithmetic():
-            a = found.a.mid() + arb(side)
-            multiplier = prove_orbit(family.at(float(found.a) + side), a).multiplier
+            a = critical_orbit.a.mid() + arb(side)
+            multiplier = prove_orbit(family.at(float(critical_orbit.a) + side), a).multiplier
             assert bool(multiplier < 1) == below
             assert bool(multiplier > 1) != below
-            assert abs((multiplier - 1) / arb(side) - found.orbit.slope) < 1e-9
-    assert found.uniqueness_range.contains(found.a)
-    assert width(found.uniqueness_range) > 2e-4
+            assert abs((multiplier - 1) / arb(side) - critical_orbit.orbit.slope) < 1e-9
+    assert critical_orbit.uniqueness_range.contains(critical_orbit.a)
+    assert width(critical_orbit.uniqueness_range) > 2e-4
 
 
 def test_a_guess_far_from_a_c_is_refused(family):
@@ -73,9 +73,9 @@ def test_the_family_contains_the_orbits_in_double_precision(branch, family):
         orbit = family.at(a)
         (piece,) = [piece for piece in branch if piece.orbit.a.contains(arb(a))]
         assert piece.orbit.period.contains(arb(orbit.period))
-        found = multipliers(orbit)
-        assert piece.orbit.multiplier.contains(arb(found.transverse.real))
-        assert piece.orbit.symmetric_multiplier.contains(arb(float(found.symmetry_preserving[0].real)))
+        spectrum = multipliers(orbit)
+        assert piece.orbit.multiplier.contains(arb(spectrum.transverse.real))
+        assert piece.orbit.symmetric_multiplier.contains(arb(float(spectrum.symmetry_preserving[0].real)))
         with arithmetic():
             piece.check_contains(prove_orbit(orbit, arb(a)).enclosure, arb(a))
         assert piece.orbit.slope > 0

@@ -31,8 +31,8 @@ def root_of(unknown):
 
 
 def test_a_solution_is_enclosed_and_the_only_one_in_its_box():
-    found = enclose(circle_and_line, [arb(1.01), arb(0.98)], [0.3, 0.3])
-    for ball, box in zip(found.inner, found.outer, strict=True):
+    enclosure = enclose(circle_and_line, [arb(1.01), arb(0.98)], [0.3, 0.3])
+    for ball, box in zip(enclosure.inner, enclosure.outer, strict=True):
         assert ball.contains(1)
         assert width(ball) < 1e-40
         assert 0.6 <= width(box) < 0.6001
@@ -55,20 +55,20 @@ def test_a_double_solution_is_refused():
 
 def test_two_nearby_solutions_are_distinguished():
     """x² = 1e-8: the widest cube with a proof contains only one root."""
-    found = enclose_widest(lambda unknown: [unknown[0] * unknown[0] - 1e-8], [arb(1e-4)], RADII)
-    assert found.inner[0].overlaps(arb(1e-8).sqrt())
-    assert not found.outer[0].contains(-1e-4)
-    assert width(found.outer[0]) > 5e-5
+    enclosure = enclose_widest(lambda unknown: [unknown[0] * unknown[0] - 1e-8], [arb(1e-4)], RADII)
+    assert enclosure.inner[0].overlaps(arb(1e-8).sqrt())
+    assert not enclosure.outer[0].contains(-1e-4)
+    assert width(enclosure.outer[0]) > 5e-5
 
 
 def test_the_proof_is_for_every_value_of_a_parameter():
     with arithmetic():
         c = arb(2, 0.01)
-        found = enclose(root_of, [arb(1.41421356)], trial_radii(root_of, [arb(1.41421356)], [c]), [c])
+        enclosure = enclose(root_of, [arb(1.41421356)], trial_radii(root_of, [arb(1.41421356)], [c]), [c])
         for value in (1.99, 2.0, 2.01):
-            assert found.inner[0].contains(arb(value).sqrt())
+            assert enclosure.inner[0].contains(arb(value).sqrt())
     # The true range of the roots is 0.00707 wide.
-    assert width(found.inner[0]) < 0.0075
+    assert width(enclosure.inner[0]) < 0.0075
 
 
 def test_derivatives_are_enclosed():
@@ -84,10 +84,10 @@ def test_derivatives_are_enclosed():
 
 
 def test_a_guess_is_refined_to_all_digits():
-    (found,) = refine_guess(root_of, [1.4], [arb(2)])
+    (root,) = refine_guess(root_of, [1.4], [arb(2)])
     with arithmetic():
-        assert abs(found - arb(2).sqrt()) < 1e-55
-    assert float(found) == math.sqrt(2.0)
+        assert abs(root - arb(2).sqrt()) < 1e-55
+    assert float(root) == math.sqrt(2.0)
     with pytest.raises(ProofError, match="cannot be inverted"):
         refine_guess(root_of, [0.0], [arb(2)])
 

@@ -52,9 +52,9 @@ def test_enclosures_contain_the_orbit_in_double_precision(family, a):
     later = [(time - first) % orbit.period for time, block, _ in orbit.events if block < 2]
     expected = [*sorted(time for time in later if time > 0.0), orbit.period]
     assert [float(time) for time in proved.event_times] == pytest.approx(expected, abs=1e-13)
-    found = multipliers(orbit)
-    assert float(proved.multiplier) == pytest.approx(found.transverse.real, abs=1e-11)
-    assert float(proved.symmetric_multiplier) == pytest.approx(found.symmetry_preserving[0].real, abs=1e-11)
+    spectrum = multipliers(orbit)
+    assert float(proved.multiplier) == pytest.approx(spectrum.transverse.real, abs=1e-11)
+    assert float(proved.symmetric_multiplier) == pytest.approx(spectrum.symmetry_preserving[0].real, abs=1e-11)
     assert (proved.arcs[0].event_block == LATERAL) == (a > 0.0757)
 
 
@@ -110,12 +110,12 @@ def test_a_shift_along_the_flow_returns(proved):
 def test_bounds_of_speed_and_force_agree_with_a_run(proved, family):
     state = InitialState("on", *slipping_state(family.at(0.08)))
     run = simulate("linearized", 0.08, state, transient=0.0, window=50.0, batches=2)
-    for found, bound in (
+    for value, bound in (
         (run.velocity.max(), proved.speed_range()),
         (1.0 - run.least_spring_force, proved.force_margin_range()),
     ):
-        assert float(found) / 0.1 == pytest.approx(float(bound.upper()), rel=0.05)
-        assert float(found) / 0.1 < bound.upper()
+        assert float(value) / 0.1 == pytest.approx(float(bound.upper()), rel=0.05)
+        assert float(value) / 0.1 < bound.upper()
 
 
 def test_a_wrong_guess_is_refused(family):

@@ -57,8 +57,8 @@ def test_an_arc_encloses_the_solution_of_mpmath(slips):
         path = law().path(slips, state, arb(A))
         for time in ("0.05", "0.125", "0.8"):
             end = path(arb(time))
-            found = [arb(value) for value in (*end.position, *end.velocity, *end.difference)]
-            for ball, number in zip(found, exact(mpf(time)), strict=True):
+            balls = [arb(value) for value in (*end.position, *end.velocity, *end.difference)]
+            for ball, number in zip(balls, exact(mpf(time)), strict=True):
                 assert holds(ball, number, "1e-30")
                 assert width(ball) < 1e-20
 
@@ -69,10 +69,10 @@ def test_a_ball_of_times_encloses_all_states():
         path = law().path(slips, state_of(slips)[0], arb(A))
         ball = path(arb("0.5").union(arb("0.8")))
         for time in ("0.5", "0.6", "0.625", "0.7", "0.75", "0.8"):
-            one = path(arb(time))
+            state = path(arb(time))
             for k in (LATERAL, CENTER):
-                assert ball.position[k].contains(one.position[k])
-                assert ball.velocity[k].contains(one.velocity[k])
+                assert ball.position[k].contains(state.position[k])
+                assert ball.velocity[k].contains(state.velocity[k])
         assert width(ball.position[0]) < 2.0
 
 
@@ -88,14 +88,14 @@ def test_derivatives_are_those_of_differences():
             return [*end.position, *end.velocity, *end.difference]
 
         at = [state.position[0], state.velocity[0], arb("1.7"), arb(A)]
-        found = derivatives(ends, at)
+        jacobian = derivatives(ends, at)
         step = arb(2) ** -40
         for column in range(4):
-            sides = [ends([one + side * step * (k == column) for k, one in enumerate(at)]) for side in (-1, 1)]
+            sides = [ends([value + side * step * (k == column) for k, value in enumerate(at)]) for side in (-1, 1)]
             for row in range(6):
                 quotient = (sides[1][row] - sides[0][row]) / (2 * step)
-                assert abs(found[row, column] - quotient) < 1e-8
-                assert width(found[row, column]) < 1e-16
+                assert abs(jacobian[row, column] - quotient) < 1e-8
+                assert width(jacobian[row, column]) < 1e-16
 
 
 def test_second_derivatives_in_time_obey_the_equations():
@@ -155,30 +155,30 @@ def family():
 
 
 @pytest.fixture(scope="module")
-def found(family):
+def critical_orbit(family):
     return prove_critical(family.at(critical_a(bifurcations_of(family))))
 
 
-def test_a_c_of_the_nonlinear_law(found, family):
-    assert width(found.a) < 1e-17
-    assert abs(critical_a(bifurcations_of(family)) - float(found.a)) < 2e-15
-    assert found.orbit.multiplier.contains(1)
-    assert found.orbit.slope > 5
-    assert found.uniqueness_range.contains(found.a)
-    orbit = family.at(float(found.a))
-    assert float(found.orbit.period) == pytest.approx(orbit.period, abs=1e-13)
-    assert float(found.orbit.symmetric_multiplier) == pytest.approx(
+def test_a_c_of_the_nonlinear_law(critical_orbit, family):
+    assert width(critical_orbit.a) < 1e-17
+    assert abs(critical_a(bifurcations_of(family)) - float(critical_orbit.a)) < 2e-15
+    assert critical_orbit.orbit.multiplier.contains(1)
+    assert critical_orbit.orbit.slope > 5
+    assert critical_orbit.uniqueness_range.contains(critical_orbit.a)
+    orbit = family.at(float(critical_orbit.a))
+    assert float(critical_orbit.orbit.period) == pytest.approx(orbit.period, abs=1e-13)
+    assert float(critical_orbit.orbit.symmetric_multiplier) == pytest.approx(
         float(multipliers(orbit).symmetry_preserving[0].real), abs=1e-11
     )
 
 
-def test_a_c_agrees_with_an_integration_of_25_digits(found):
+def test_a_c_agrees_with_an_integration_of_25_digits(critical_orbit):
     """Integrate a period from the enclosed positions with the Taylor series of mpmath."""
-    inner = found.orbit.enclosure.inner
+    inner = critical_orbit.orbit.enclosure.inner
     with mpmath.workdps(25):
-        numbers = [mpf(value.str(40, radius=False)) for value in (*inner, found.a)]
+        numbers = [mpf(value.str(40, radius=False)) for value in (*inner, critical_orbit.a)]
         z = [numbers[0], numbers[1], mpf(-1), mpf(-1), mpf(1), mpf(0)]
-        for arc, time in zip(found.orbit.arcs, numbers[POSITIONS:-1], strict=True):
+        for arc, time in zip(critical_orbit.orbit.arcs, numbers[POSITIONS:-1], strict=True):
             z = list(mpmath.odefun(motion(arc.slips, numbers[-1]), 0, z)(time))
             if arc.slips[arc.event_block]:
                 assert abs(z[2 + arc.event_block] + 1) < mpf(10) ** -17
@@ -190,8 +190,8 @@ def test_a_c_agrees_with_an_integration_of_25_digits(found):
         assert abs(z[4] - 1) < mpf(10) ** -17
 
 
-def test_a_wrong_arc_is_not_certified(found):
-    wrong = changed(found.orbit, 3, arb("0.1"))
+def test_a_wrong_arc_is_not_certified(critical_orbit):
+    wrong = changed(critical_orbit.orbit, 3, arb("0.1"))
     with pytest.raises(ProofError, match="blocks 1 and 3, the arc until block 2 start: not proved to keep sticking"):
         wrong.check_arcs()
     assert len(follow_arcs(wrong.arcs, [*wrong.enclosure.inner, wrong.a])[0]) == 5

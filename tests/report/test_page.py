@@ -7,12 +7,11 @@ from itertools import pairwise
 
 import pytest
 import xarray
-import yaml
 
-from burridge_knopoff.claims import claim
+from burridge_knopoff.claims import paper
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.report.page import Sources, render
-from burridge_knopoff.report.verdicts import MAIN, SIGNS
+from burridge_knopoff.report.verdicts import MAIN, SIGNS, TITLES
 from tests.report.conftest import CLAIMS
 from tests.small_study import run_study
 
@@ -94,7 +93,8 @@ def test_the_main_claims_are_quoted_with_their_verdicts(poor, tmp_path):
 
 
 def test_every_main_claim_is_one_of_the_paper():
-    assert set(MAIN) <= set(yaml.safe_load(claim.FILE.read_text()))
+    assert {*MAIN} <= {*paper.CLAIMS}
+    assert {claim.topic for claim in paper.CLAIMS.values()} <= {*TITLES}
 
 
 def test_a_study_that_judges_nothing_does_not_open_with_the_paper(poor):

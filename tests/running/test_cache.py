@@ -22,7 +22,7 @@ class Item:
     values: object
 
 
-def first(*items, more=0):
+def first(*items, extra=0):
     return items[0]
 
 
@@ -46,8 +46,8 @@ CALLS = [
     (first, np.array([1.0, 0.0], dtype="f4")),
     (first, Item(np.zeros(2))),
     (first, Item(np.zeros(3))),
-    (partial(first, more=1), 1),
-    (partial(first, more=2), 1),
+    (partial(first, extra=1), 1),
+    (partial(first, extra=2), 1),
     (first, MODEL),
     (first, MODEL.at(0.0800000000000001)),
     (first, dataclasses.replace(MODEL, contact="symmetric")),
@@ -65,10 +65,10 @@ def test_each_call_is_made_once_and_has_its_own_file(tmp_path):
 
 def test_cached_properties_and_identity_of_arguments_do_not_count(tmp_path):
     """A property computed before, or a shared object, does not make the call a different one."""
-    asked = MODEL.at(0.05)
-    path = cached_call(tmp_path, first, [asked, asked])[1]
-    assert asked.sliding_offset.shape == (3,)
-    assert cached_call(tmp_path, first, [asked, MODEL.at(0.05)])[1:] == (path, True)
+    model = MODEL.at(0.05)
+    path = cached_call(tmp_path, first, [model, model])[1]
+    assert model.sliding_offset.shape == (3,)
+    assert cached_call(tmp_path, first, [model, MODEL.at(0.05)])[1:] == (path, True)
 
 
 @pytest.mark.parametrize(
@@ -135,18 +135,18 @@ def number_and_process(number):
 def test_unused_files_are_deleted_at_the_end(tmp_path, processes):
     """Caches of other settings in neighbouring folders are deleted too; no file is deleted if a call failed."""
     before, now = tmp_path / (16 * "0"), tmp_path / (16 * "1")
-    others = [tmp_path / "mine", now / "mine", now / "numbers" / "mine", tmp_path / "kept/numbers" / (32 * "a")]
-    for path in others:
+    kept_paths = [tmp_path / "mine", now / "mine", now / "numbers" / "mine", tmp_path / "kept/numbers" / (32 * "a")]
+    for path in kept_paths:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text("mine")
     for folder, numbers in ((before, [1]), (now, [1, 2])):
-        with parallel_map(processes, folder) as each:
-            each("numbers", number_and_process, numbers)
+        with parallel_map(processes, folder) as pool:
+            pool("numbers", number_and_process, numbers)
     assert not any(path.is_file() for path in before.rglob("*"))
-    with pytest.raises(ZeroDivisionError), parallel_map(processes, now) as each:
-        each("fails", divmod, [1], [0])
-    with parallel_map(processes, now) as each:
-        assert [pid != os.getpid() for _, pid in each("numbers", number_and_process, [2])] == [processes == 2]
+    with pytest.raises(ZeroDivisionError), parallel_map(processes, now) as pool:
+        pool("fails", divmod, [1], [0])
+    with parallel_map(processes, now) as pool:
+        assert [pid != os.getpid() for _, pid in pool("numbers", number_and_process, [2])] == [processes == 2]
     left = {path for path in tmp_path.rglob("*") if path.is_file()}
-    assert set(others) <= left
-    assert len(left) == len(others) + 1
+    assert set(kept_paths) <= left
+    assert len(left) == len(kept_paths) + 1

@@ -45,14 +45,14 @@ def test_the_cost_of_a_stiff_chain_is_that_measured(case, exponents):
     model = Model(Chain(3, **STIFF[case]), law_of("linearized", 0.1))
     settings = Settings(transient=0.0, window=2e4 / model.chain.highest_rate, lyapunov_exponents=exponents)
     state = InitialState("apart", (-0.98, -0.95, -0.96), (0.1, 0.11, 0.105))
-    taken = []
+    times = []
     for _ in range(3):
         begun = time.process_time()
         assert run(model, state, settings).status == "completed"
-        taken.append(time.process_time() - begun)
-    found = cost_of(model, model.begin(state), settings)[0] * settings.duration
+        times.append(time.process_time() - begun)
+    cost = cost_of(model, model.begin(state), settings)[0] * settings.duration
     assert is_stiff(model.chain)
-    assert min(taken) / 6.0 < found < 6.0 * min(taken)
+    assert min(times) / 6.0 < cost < 6.0 * min(times)
 
 
 @pytest.mark.parametrize(

@@ -61,11 +61,11 @@ def test_a_run_that_stores_too_much_ends_with_one_line(key, numbers, options, mo
     """An event of three blocks has nine numbers with states, three without; a section crossing has three."""
     options = {"transient": 0.0, "window": 100.0, "event_window": 100.0, "lyapunov_exponents": 0, **options}
     run = simulate("linearized", 0.08, "plus", **options)
-    kept = {9: len(run.event_time), 3: len(run.earlier_event_time) or len(run.crossing_time)}[numbers]
-    assert kept > 5
-    monkeypatch.setattr(runner, "MOST_NUMBERS", numbers * kept)
+    count = {9: len(run.event_time), 3: len(run.earlier_event_time) or len(run.crossing_time)}[numbers]
+    assert count > 5
+    monkeypatch.setattr(runner, "MOST_NUMBERS", numbers * count)
     assert simulate("linearized", 0.08, "plus", **options).event_count == run.event_count
-    monkeypatch.setattr(runner, "MOST_NUMBERS", numbers * (kept - 1))
+    monkeypatch.setattr(runner, "MOST_NUMBERS", numbers * (count - 1))
     pattern = rf"^{key}: got more than \S+ numbers to store by τ = [\d.]+, expected [\w, ]+$"
     with pytest.raises(ValueError, match=pattern):
         simulate("linearized", 0.08, "plus", **options)

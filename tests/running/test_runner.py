@@ -33,9 +33,9 @@ def test_unequal_chains_and_rings_against_scipy(chain, law):
     position = -0.3 + 0.25 * np.sin(1.0 + 2.0 * np.arange(4)) * model.chain.thresholds
     start = ChainState(position, 0.1 + 0.05 * np.cos(3.0 * np.arange(4)), np.zeros(4, dtype=bool))
     expected, state = model_events(model, start, 10.0)
-    solver, found = carry(model, start, 10.0)
-    assert len(found) >= 4
-    check_events(found, expected, 1e-8)
+    solver, events = carry(model, start, 10.0)
+    assert len(events) >= 4
+    check_events(events, expected, 1e-8)
     assert np.abs(solver.state().vector() - state).max() < 1e-8
 
 
@@ -66,14 +66,14 @@ def test_example_studies_against_scipy(repository, model, a, end, least, toleran
     study = load_study(read_config(file), str(file))
     settings = Settings(start="tested", transient=0.0, window=end, events="all", lyapunov_exponents=0)
     state = study.state(study.initial[0])
-    found = listed(run(study.model(study.laws[0], a), state, settings))
+    events = listed(run(study.model(study.laws[0], a), state, settings))
     stuck, position = np.zeros(study.blocks, dtype=int), np.array(state.position)
     stiffness, threshold, friction = model(a)
     assert (-stiffness @ position < threshold).all()
     v = study.config["v"]
     expected, *_ = scipy_events(stiffness, threshold, friction, v, position, 0.0 * position, stuck, end)
     assert len(expected) >= least
-    check_events(found, expected, tolerance)
+    check_events(events, expected, tolerance)
 
 
 def test_the_distance_of_unequal_chains_is_that_of_the_end_blocks():
@@ -155,10 +155,10 @@ def test_events_that_were_read_survive_another_run():
     runner = Runner(model, keep_events=True)
     runner.state_after(model.begin(PAPER_STATES["plus"]), 40.0)
     time, block, _ = runner.events()
-    kept = time.copy()
+    copy = time.copy()
     runner.state_after(model.begin(PAPER_STATES["minus"]), 10.0)
-    assert len(block) == len(kept) > 10
-    assert (time == kept).all()
+    assert len(block) == len(copy) > 10
+    assert (time == copy).all()
     # The log contains only the events of the second run.
     assert runner.events()[0].max() <= 10.0
     assert len(runner.events()[0]) == runner.log.count
@@ -167,8 +167,8 @@ def test_events_that_were_read_survive_another_run():
 @pytest.mark.parametrize("solver", ["series", "rk4"])
 def test_a_log_of_stops_has_the_stops_of_the_whole_log_with_states(solver):
     model = Model(Chain(3), law_of("linearized", 0.08))
-    asked = Settings(transient=30.0, window=60.0, event_window=60.0, solver=solver)
-    whole, stops = (run(model, PAPER_STATES["plus"], asked, stops_only=only) for only in (False, True))
+    options = Settings(transient=30.0, window=60.0, event_window=60.0, solver=solver)
+    whole, stops = (run(model, PAPER_STATES["plus"], options, stops_only=only) for only in (False, True))
     chosen = whole.event_kind == 0
     assert 0 < chosen.sum() < len(chosen)
     for name in ("event_time", "event_block", "event_kind", "event_position", "event_velocity"):

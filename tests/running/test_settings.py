@@ -46,10 +46,10 @@ def test_bad_input_is_refused_in_one_line(options, words):
 )
 def test_a_run_that_would_store_too_much_is_refused_by_the_responsible_key(key, options):
     """A sample of a trajectory has 2N + 1 numbers; the limit corresponds to a few GB."""
-    asked = Settings(**{"transient": 0.0, "window": 1e5, **options})
-    asked.check_chain(Chain(3))
+    run_settings = Settings(**{"transient": 0.0, "window": 1e5, **options})
+    run_settings.check_chain(Chain(3))
     with pytest.raises(ValueError, match=f"^{key}: .* numbers to store, not"):
-        asked.check_chain(Chain(60))
+        run_settings.check_chain(Chain(60))
 
 
 def test_steps_of_rk4_that_are_too_long_for_the_chain_are_refused():

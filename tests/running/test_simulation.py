@@ -200,9 +200,9 @@ def test_a_run_under_another_law_starts_at_the_given_state():
     first = simulate("linearized", 0.08, "plus", transient=0, window=37.0)
     other = first.model.at(0.2)
     bare = replace(first.final)
-    one, two = (simulate(other, initial=at, transient=0, window=20.0) for at in (first.final, bare))
-    assert np.array_equal(one.final.vector(), two.final.vector())
-    assert one.begin_time == 37.0
+    from_final, from_bare = (simulate(other, initial=at, transient=0, window=20.0) for at in (first.final, bare))
+    assert np.array_equal(from_final.final.vector(), from_bare.final.vector())
+    assert from_final.begin_time == 37.0
 
 
 @pytest.mark.parametrize("start", ["moving", "tested"])

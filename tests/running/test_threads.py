@@ -11,9 +11,9 @@ from burridge_knopoff.running.threads import map_in_threads
 
 @pytest.mark.parametrize("threads", [1, 3])
 def test_results_come_in_order(threads):
-    found = map_in_threads(threads, lambda one, other: (one + other, threading.get_ident()), range(30), range(100, 130))
-    assert [total for total, _ in found] == list(range(100, 160, 2))
-    assert ({thread for _, thread in found} == {threading.get_ident()}) == (threads == 1)
+    sums = map_in_threads(threads, lambda one, other: (one + other, threading.get_ident()), range(30), range(100, 130))
+    assert [total for total, _ in sums] == list(range(100, 160, 2))
+    assert ({thread for _, thread in sums} == {threading.get_ident()}) == (threads == 1)
 
 
 def test_an_error_ends_the_other_calls():

@@ -4,7 +4,7 @@ import numpy as np
 
 from burridge_knopoff import Chain, InitialState, Model, MotionKind, SearchSettings, Symmetry, law_of
 from burridge_knopoff.attractors.lifetime import Lifetime
-from burridge_knopoff.continuation.along_a import Continuation
+from burridge_knopoff.continuation.attractor_continuation import Continuation
 from tests.motion.stand_in import stand_in
 
 STATES = [InitialState("here", (0.0,) * 3, (0.1,) * 3), InitialState("back", (0.0,) * 3, (0.1, -0.1, 0.1))]

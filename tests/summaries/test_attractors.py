@@ -8,7 +8,7 @@ import pytest
 from burridge_knopoff import Chain, InitialState, Model, MotionKind, SearchSettings, Symmetry, law_of
 from burridge_knopoff.attractors.lifetime import Lifetime
 from burridge_knopoff.attractors.table import name_branches, slot_values
-from burridge_knopoff.continuation.along_a import continue_attractors
+from burridge_knopoff.continuation.attractor_continuation import continue_attractors
 from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.sampling import fraction_interval

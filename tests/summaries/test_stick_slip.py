@@ -133,8 +133,8 @@ def test_events_stored_without_states_count_too(tmp_path):
         summarize(points(tmp_path / events, "plus", 0.08, events=events, event_window=width), **SETTINGS)
         for events, width in (("window", 50.0), ("window", 400.0), ("all", 1.0))
     ]
-    # Frequencies are more accurate for longer series of velocities.
-    same = [name for name in kept[0] if not name.startswith("velocity_")]
+    # Frequencies are more accurate for longer series of velocities; the smallest jump is among more events.
+    same = [name for name in kept[0] if not name.startswith(("velocity_", "stop_jump", "start_jump"))]
     assert kept[0][same].identical(kept[1][same])
     assert kept[0][same].identical(kept[2][same])
     errors = [float(item["velocity_frequency_error"].max()) for item in kept]

@@ -75,16 +75,20 @@ def asymptotic_states(
     starts = [model.begin(state, start) for state in initial]
     # States in transient chaos, and those that the search has given up, are followed up to the limit of labels.
     late = [k for k, index in enumerate(labels.tolist()) if index not in lasting]
-    there, _ = label(model, [attractors[index] for index in lasting], [starts[k] for k in late], settings.label_limit)
-    labels[late] = [lasting[index] if index != UNDETERMINED else UNDETERMINED for index in there.tolist()]
+    late_labels, _ = label(
+        model, [attractors[index] for index in lasting], [starts[k] for k in late], settings.label_limit
+    )
+    labels[late] = [lasting[index] if index != UNDETERMINED else UNDETERMINED for index in late_labels.tolist()]
     # A mirror image has the same ⟨J⟩ and the same kind.
-    labels = np.array([*(min(index, one.partner) for index, one in enumerate(attractors)), UNDETERMINED])[labels]
+    labels = np.array([*(min(index, attractor.partner) for index, attractor in enumerate(attractors)), UNDETERMINED])[
+        labels
+    ]
     reached = {*labels.tolist()} - {UNDETERMINED}
-    known = {index: _state_on(model, attractors, index, settings) for index in reached}
+    states = {index: _state_on(model, attractors, index, settings) for index in reached}
     lost = np.flatnonzero(labels == UNDETERMINED).tolist()
     ends = advance(model, [starts[k] for k in lost], settings.label_limit) if lost else []
     slow = {k: _slow_synchrony(model, end, settings, motion) for k, end in zip(lost, ends, strict=True)}
-    return [slow[k] if k in slow else known[index] for k, index in enumerate(labels.tolist())]
+    return [slow[k] if k in slow else states[index] for k, index in enumerate(labels.tolist())]
 
 
 def _state_on(model: Model, attractors: Sequence[Attractor], index: int, settings: SearchSettings) -> AsymptoticState:
@@ -93,9 +97,9 @@ def _state_on(model: Model, attractors: Sequence[Attractor], index: int, setting
     In the window of the search ⟨J⟩ of chaos has an error of half a percent or more.
     """
     motion = attractors[index].motion
-    found = _from_motion(motion)
+    state = _from_motion(motion)
     if motion.kind not in CHAOS:
-        return found
+        return state
     window = EXPOSURE * settings.lifetime
     options = Settings(
         transient=0.0,
@@ -108,13 +112,13 @@ def _state_on(model: Model, attractors: Sequence[Attractor], index: int, setting
     )
     trajectory = run(model, motion.state(), options)
     if trajectory.status != "completed" or not len(trajectory.event_time):
-        return found
+        return state
     last = np.concatenate([trajectory.event_position[-1] - model.sliding_offset, trajectory.event_velocity[-1]])
     at, _ = label(model, attractors, [state_of(last)], settings.time_limit)
     # Even chaos that persists may end in this time. The average would then mix two motions.
     if at[0] not in (index, attractors[index].partner):
-        return found
-    return replace(found, mean_distance=trajectory.mean_distance, mean_distance_error=trajectory.mean_distance_error)
+        return state
+    return replace(state, mean_distance=trajectory.mean_distance, mean_distance_error=trajectory.mean_distance_error)
 
 
 def _slow_synchrony(model: Model, end: ChainState, settings: SearchSettings, motion: MotionSettings) -> AsymptoticState:
@@ -132,8 +136,8 @@ def _slow_synchrony(model: Model, end: ChainState, settings: SearchSettings, mot
         return AsymptoticState()
     if orbit.symmetry != Symmetry.SYNCHRONIZED or multipliers(orbit).unstable_count:
         return AsymptoticState()
-    found = Classifier(model, settings.transient, settings.window, motion).measure(symmetric)
-    return _from_motion(found) if found is not None else AsymptoticState()
+    steady_motion = Classifier(model, settings.transient, settings.window, motion).measure(symmetric)
+    return _from_motion(steady_motion) if steady_motion is not None else AsymptoticState()
 
 
 def _from_motion(motion: SteadyMotion) -> AsymptoticState:

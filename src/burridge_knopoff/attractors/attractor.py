@@ -73,11 +73,11 @@ def attractors_of(model: Model, attractors: Sequence[Attractor]) -> list[Attract
     return attractors
 
 
-def required_returns(found: Returns, tolerance: float) -> int:
+def required_returns(section: Returns, tolerance: float) -> int:
     """Return the number of successive returns that capture requires: at least two periods of a periodic orbit."""
-    if not found.has_periodic_spacing(tolerance):
+    if not section.has_periodic_spacing(tolerance):
         return CLOSE_RETURNS
-    return max(CLOSE_RETURNS, 2 * orbit_length(found.returns, 10.0 * tolerance, LONGEST_ORBIT))
+    return max(CLOSE_RETURNS, 2 * orbit_length(section.returns, 10.0 * tolerance, LONGEST_ORBIT))
 
 
 def perturb(start: ChainState, size: float, generator: np.random.Generator) -> ChainState:

@@ -71,32 +71,34 @@ class Convergence:
 
     def settle(self, start: ChainState) -> Returns | None:
         """Integrate to convergence and return the section returns; None if the state does not converge."""
-        found = None
+        section = None
         transient, window = self.settings.transient, self.settings.window
         tolerance, resolution = self.tolerance, self.resolution
         longest = self.longest_extension * window
         while transient <= self.longest_extension * self.settings.transient:
-            found = visit(self.model, start, transient, window)
-            if found is None:
+            section = visit(self.model, start, transient, window)
+            if section is None:
                 return None
-            start = found.state()
-            closed, settled = found.has_periodic_spacing(tolerance), found.is_settled(tolerance, resolution)
+            start = section.state()
+            closed, settled = section.has_periodic_spacing(tolerance), section.is_settled(tolerance, resolution)
             # A set that is not a periodic orbit takes longer to fill, above all near a resonance, where half of a torus
             # looks like a complete set. A chaotic transient may still end.
-            whole = self.is_symmetric(found) or not self.model.chain.is_mirror_symmetric
+            whole = self.is_symmetric(section) or not self.model.chain.is_mirror_symmetric
             filled = window >= FILLING_WINDOWS * self.settings.window and whole
             if settled and (closed or filled or window == longest):
-                return self.follow_until_steady(found)
+                return self.follow_until_steady(section)
             if not settled:
                 transient *= 2
             if not closed:
                 window = min(2 * window, longest)
         # A motion that has not settled by now drifts slowly along a set or towards one.
         return (
-            self.follow_until_steady(found) if found is not None and found.drift <= LOOSE_DRIFT * resolution else None
+            self.follow_until_steady(section)
+            if section is not None and section.drift <= LOOSE_DRIFT * resolution
+            else None
         )
 
-    def follow_until_steady(self, found: Returns) -> Returns | None:
+    def follow_until_steady(self, section: Returns) -> Returns | None:
         """Return a motion once it no longer drifts; None if it still drifts after the longest wait.
 
         A periodic orbit is approached exponentially, so the decay of the drift gives the remaining distance. A set that
@@ -105,25 +107,25 @@ class Convergence:
         still = self.tolerance * STEADY_DRIFT
         wait = self.settings.time_limit
         while wait <= self.longest_extension * self.settings.time_limit:
-            closed = found.has_periodic_spacing(self.tolerance)
-            if found.drift <= still or (not closed and found.is_settled(self.tolerance, self.resolution)):
-                return found
-            later = visit(self.model, found.state(), wait, found.window)
+            closed = section.has_periodic_spacing(self.tolerance)
+            if section.drift <= still or (not closed and section.is_settled(self.tolerance, self.resolution)):
+                return section
+            later = visit(self.model, section.state(), wait, section.window)
             if later is None:
                 return None
             if closed and later.has_periodic_spacing(self.tolerance):
-                if _remaining_distance(found, later, wait) <= REACHED_DISTANCE * self.resolution:
+                if _remaining_distance(section, later, wait) <= REACHED_DISTANCE * self.resolution:
                     return later
-            elif not closed and is_near(later.returns, found.returns, self._reach(found)):
+            elif not closed and is_near(later.returns, section.returns, self._reach(section)):
                 return later
-            found, wait = later, 2.0 * wait
+            section, wait = later, 2.0 * wait
         return None
 
-    def measure(self, found: Returns, again: int = 0) -> tuple[Returns, SteadyMotion] | None:
+    def measure(self, section: Returns, again: int = 0) -> tuple[Returns, SteadyMotion] | None:
         """Measure a settled motion. If it turns out to be a transient, return the motion that follows it instead."""
         settings = self.settings
-        closed, window = found.has_periodic_spacing(self.tolerance), self.measuring_window(found)
-        motion = self.classifier(settings.transient, window).measure(found.state())
+        closed, window = section.has_periodic_spacing(self.tolerance), self.measuring_window(section)
+        motion = self.classifier(settings.transient, window).measure(section.state())
         if motion is None:
             return None
         if motion.left_for is not None:
@@ -134,47 +136,49 @@ class Convergence:
         if closed and not chaotic:
             # The motion repeats. A window gives no better exponents of a long orbit that hardly attracts.
             mean = synchronization_distance(motion.mean_distance, self.model.chain.is_mirror_symmetric)
-            own = self.motion_settings.scaled_to_velocity(self.model.v)
+            scaled_settings = self.motion_settings.scaled_to_velocity(self.model.v)
             period = motion.period if math.isfinite(motion.period) else math.inf
-            return found, replace(motion, kind=periodic_orbit_kind(mean, period, own), period=period)
+            return section, replace(motion, kind=periodic_orbit_kind(mean, period, scaled_settings), period=period)
         if not chaotic and motion.mean_distance_error <= UNSTEADY_ERROR * motion.mean_distance:
-            return found, motion
+            return section, motion
         # Chaos that still holds a state at the time limit is listed, however long it lasts.
-        later = visit(self.model, found.state(), settings.time_limit, settings.window)
+        later = visit(self.model, section.state(), settings.time_limit, settings.window)
         if later is None:
             return None
         # Thin chaos may look periodic in one window, but hardly in a second one.
         ended = later.has_periodic_spacing(self.tolerance) and later.is_settled(self.tolerance, self.resolution)
-        stays = not ended and (chaotic or has_same_stop_shares(later.stop_count, found.stop_count))
-        return (found, motion) if stays or again == self.trials else self.measure(later, again + 1)
+        stays = not ended and (chaotic or has_same_stop_shares(later.stop_count, section.stop_count))
+        return (section, motion) if stays or again == self.trials else self.measure(later, again + 1)
 
-    def measuring_window(self, found: Returns) -> float:
+    def measuring_window(self, section: Returns) -> float:
         """Return the window in which a motion is measured; for a long orbit, the window in which it has repeated."""
-        return found.window if found.has_periodic_spacing(self.tolerance) else FILLING_WINDOWS * self.settings.window
+        return (
+            section.window if section.has_periodic_spacing(self.tolerance) else FILLING_WINDOWS * self.settings.window
+        )
 
-    def is_symmetric(self, found: Returns) -> bool:
+    def is_symmetric(self, section: Returns) -> bool:
         """Return whether a motion cannot be distinguished from its mirror image in its window."""
-        return _has_comparable_image(found) and is_near(found.mirror_returns, found.returns, self._reach(found))
+        return _has_comparable_image(section) and is_near(section.mirror_returns, section.returns, self._reach(section))
 
-    def is_close_to_mirror_image(self, found: Returns | SteadyMotion) -> bool:
+    def is_close_to_mirror_image(self, section: Returns | SteadyMotion) -> bool:
         """Return whether a motion comes within the resolution of its mirror image."""
-        if not _has_comparable_image(found):
+        if not _has_comparable_image(section):
             return False
-        return minimum_distance(found.returns, found.mirror_returns, self.resolution) < self.resolution
+        return minimum_distance(section.returns, section.mirror_returns, self.resolution) < self.resolution
 
-    def is_eventually_symmetric(self, found: Returns) -> bool:
+    def is_eventually_symmetric(self, section: Returns) -> bool:
         """Return whether a motion close to its mirror image covers it in a longer time."""
-        if found.has_periodic_spacing(self.tolerance) or not self.is_close_to_mirror_image(found):
+        if section.has_periodic_spacing(self.tolerance) or not self.is_close_to_mirror_image(section):
             return False
-        longer = visit(self.model, found.state(), 0.0, SYMMETRY_WINDOW * self.settings.transient)
-        if longer is None or longer.block != found.block:
+        longer = visit(self.model, section.state(), 0.0, SYMMETRY_WINDOW * self.settings.transient)
+        if longer is None or longer.block != section.block:
             return False
-        return is_near(found.mirror_returns, longer.returns, self._reach(found))
+        return is_near(section.mirror_returns, longer.returns, self._reach(section))
 
-    def is_embedded_in_chaos(self, found: Returns) -> bool:
+    def is_embedded_in_chaos(self, section: Returns) -> bool:
         """Return whether a state perturbed off a motion moves in chaos up to the time limit."""
         settings = self.settings
-        start = perturb(found.state(), SLOW_PUSH * self.resolution, np.random.default_rng(settings.seed))
+        start = perturb(section.state(), SLOW_PUSH * self.resolution, np.random.default_rng(settings.seed))
         times = SLOW_TIME * settings.transient, FILLING_WINDOWS * settings.window
         around = self.classifier(*times).measure(start)
         if around is None or around.kind not in CHAOS:
@@ -186,17 +190,17 @@ class Convergence:
         """Return a classifier of converged motion with this transient and window."""
         return Classifier(self.model, transient, window, self.motion_settings, self.growth_window)
 
-    def _reach(self, found: Returns) -> float:
+    def _reach(self, section: Returns) -> float:
         """Return the largest distance from a motion of a return that belongs to it."""
-        return max(self.resolution, 0.0 if found.has_periodic_spacing(self.tolerance) else SPACINGS * found.spacing)
+        return max(self.resolution, 0.0 if section.has_periodic_spacing(self.tolerance) else SPACINGS * section.spacing)
 
 
-def _remaining_distance(found: Returns, later: Returns, wait: float) -> float:
+def _remaining_distance(section: Returns, later: Returns, wait: float) -> float:
     """Return the distance of a motion from the orbit that it approaches, from its drift at two times `wait` apart."""
-    rate = np.log(found.drift / max(later.drift, np.finfo(float).tiny)) / (wait + later.window)
+    rate = np.log(section.drift / max(later.drift, np.finfo(float).tiny)) / (wait + later.window)
     return float(later.drift / np.expm1(0.5 * rate * later.window)) if rate > 0.0 else np.inf
 
 
-def _has_comparable_image(found: Returns | SteadyMotion) -> bool:
+def _has_comparable_image(section: Returns | SteadyMotion) -> bool:
     """Return whether the returns of a motion and its mirror image are taken at the same block and can be compared."""
-    return len(found.mirror_returns) > 0 and found.block == found.mirror_block
+    return len(section.mirror_returns) > 0 and section.block == section.mirror_block

@@ -78,9 +78,9 @@ def label_arrays(
         near = np.flatnonzero(labels == index)
         if not (attractor.patience and prompt and len(near)):
             continue
-        others, when, _ = first([attractors[k] for k in prompt], near, min(attractor.patience, time_limit))
-        gone = others != UNDETERMINED
-        labels[near[gone]], times[near[gone]] = np.array(prompt)[others[gone]], when[gone]
+        prompt_labels, when, _ = first([attractors[k] for k in prompt], near, min(attractor.patience, time_limit))
+        gone = prompt_labels != UNDETERMINED
+        labels[near[gone]], times[near[gone]] = np.array(prompt)[prompt_labels[gone]], when[gone]
     return labels, times, last
 
 

@@ -98,15 +98,15 @@ def lifetimes(
     settings : its `lifetime` is the limit above which chaos counts as an attractor
     exposure : total time in units of this limit, see EXPOSURE
     """
-    found: list[Lifetime | None] = []
+    lives: list[Lifetime | None] = []
     for index, attractor in enumerate(attractors):
         if attractor.motion.kind not in CHAOS:
-            found.append(None)
+            lives.append(None)
         elif attractor.partner < index:
-            found.append(found[attractor.partner])
+            lives.append(lives[attractor.partner])
         else:
-            found.append(_lifetime(model, attractors, index, settings, exposure))
-    return found
+            lives.append(_lifetime(model, attractors, index, settings, exposure))
+    return lives
 
 
 def _lifetime(
@@ -115,13 +115,13 @@ def _lifetime(
     """Return the lifetime of a chaotic set, from more trajectories until these decide whether it is above the limit."""
     generator = np.random.default_rng(settings.seed)
     follow = partial(_follow, model, attractors, index, settings, exposure, generator)
-    found = follow(TRAJECTORIES)
-    for times in EXTENSIONS if found.ends else ():
-        if found.is_decided(settings.lifetime):
+    lifetime = follow(TRAJECTORIES)
+    for times in EXTENSIONS if lifetime.ends else ():
+        if lifetime.is_decided(settings.lifetime):
             break
-        more = follow(TRAJECTORIES * times)
-        found = Lifetime(found.ends + more.ends, found.time + more.time)
-    return found
+        extension = follow(TRAJECTORIES * times)
+        lifetime = Lifetime(lifetime.ends + extension.ends, lifetime.time + extension.time)
+    return lifetime
 
 
 def _follow(
@@ -140,17 +140,19 @@ def _follow(
     size = min(ENSEMBLE_PERTURBATION * settings.resolution * model.scale, ENSEMBLE_RADIUS_SHARE * attractor.radius)
     chosen = generator.integers(len(returns), size=count)
     starts = [perturb(state_of(returns[k]), size, generator) for k in chosen]
-    others = [other for k, other in enumerate(attractors) if k not in (index, attractor.partner)]
+    targets = [target for k, target in enumerate(attractors) if k not in (index, attractor.partner)]
     # Trajectories leave chaos at a constant rate, and are captured elsewhere at the same rate once the first have had
     # time for it. Captures before that time are not counted.
-    late = max((_capture_time(model, other) for other in others), default=0.0)
-    gone, when, last = label_arrays(model, others, *stack_states(starts), late + time)
-    known = gone != UNDETERMINED
+    late = max((_capture_time(model, target) for target in targets), default=0.0)
+    gone, when, last = label_arrays(model, targets, *stack_states(starts), late + time)
+    is_captured = gone != UNDETERMINED
 
     # The radius of thin chaos may be smaller than the distances between its returns, and would miss its own states.
     sets = [
-        replace(one, radius=max(one.radius, SPACINGS * one.motion.spacing)) if k in (index, attractor.partner) else one
-        for k, one in enumerate(attractors)
+        replace(item, radius=max(item.radius, SPACINGS * item.motion.spacing))
+        if k in (index, attractor.partner)
+        else item
+        for k, item in enumerate(attractors)
     ]
 
     def find_undetermined(chosen: np.ndarray, there: list[ChainState]) -> np.ndarray:
@@ -158,16 +160,16 @@ def _follow(
         return chosen[label(model, sets, there, settings.time_limit)[0] == UNDETERMINED]
 
     # A trajectory that reaches no known set has left at an unknown time, some before counting starts.
-    lost = find_undetermined(np.flatnonzero(~known), [state_of(state) for state in last[~known]])
+    lost = find_undetermined(np.flatnonzero(~is_captured), [state_of(state) for state in last[~is_captured]])
     early = find_undetermined(lost, advance(model, [starts[k] for k in lost], late) if len(lost) else [])
-    if count - np.count_nonzero(known & (when <= late)) - len(early) < FEWEST_LEFT:
+    if count - np.count_nonzero(is_captured & (when <= late)) - len(early) < FEWEST_LEFT:
         # Chaos this short is over before counting starts; all captures are counted.
-        spent = np.where(known, when, late + time)
+        spent = np.where(is_captured, when, late + time)
         spent[lost] = 0.5 * late
-        return Lifetime(int(known.sum()) + len(lost), float(spent.sum()))
-    ends = known & (when > late)
+        return Lifetime(int(is_captured.sum()) + len(lost), float(spent.sum()))
+    ends = is_captured & (when > late)
     ends[lost] = True
-    spent = np.where(known, np.maximum(when - late, 0.0), time)
+    spent = np.where(is_captured, np.maximum(when - late, 0.0), time)
     spent[lost] = 0.5 * time
     ends[early], spent[early] = False, 0.0
     return Lifetime(int(ends.sum()), float(spent.sum()))

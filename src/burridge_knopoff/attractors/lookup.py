@@ -51,11 +51,13 @@ def reached_values(attractors: xarray.Dataset, initial: str, law: str, name: str
     """
     # Indexing variables is faster than indexing the Dataset; the claims call this a thousand times.
     chosen = {"law": law, "initial": initial}
-    place = {dimension: attractors[dimension].values.tolist().index(one) for dimension, one in chosen.items()}
+    place = {
+        dimension: attractors[dimension].values.tolist().index(coordinate) for dimension, coordinate in chosen.items()
+    }
 
     def of(variable: str) -> np.ndarray:
-        found = attractors.variables[variable]
-        return found.isel({dimension: k for dimension, k in place.items() if dimension in found.dims}).values
+        array = attractors.variables[variable]
+        return array.isel({dimension: k for dimension, k in place.items() if dimension in array.dims}).values
 
     branch = of("branch")
     slots = (branch == of("initial_branch")[:, None]) & (of("side") == of("initial_side")[:, None]) & (branch >= 0)
@@ -70,10 +72,10 @@ def reached_attractors(attractors: xarray.Dataset) -> xarray.Dataset:
     The result is over (law, initial, a). Where `known` is false the attractor is undetermined, and the values are
     meaningless.
     """
-    own = attractors.sel(contact=attractors.attrs["contact"], start=attractors.attrs["start"])
-    known, slot = reached_slots(own)
+    table = attractors.sel(contact=attractors.attrs["contact"], start=attractors.attrs["start"])
+    mask, slot = reached_slots(table)
     names = ["mean_distance", "mean_distance_error", "kind", "period"]
-    reached = own[names].isel(attractor=slot).assign(known=known)
+    reached = table[names].isel(attractor=slot).assign(known=mask)
     return reached.drop_vars(("contact", "start")).transpose("law", "initial", "a")
 
 

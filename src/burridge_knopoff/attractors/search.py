@@ -137,12 +137,12 @@ class Search(Convergence):
         size = SYMMETRY_PUSH * self.resolution
         return [perturb(attractor.motion.state(), size, generator) for attractor in attractors]
 
-    def starts(self, given: Sequence[InitialState], start: str) -> list[ChainState]:
+    def starts(self, initial: Sequence[InitialState], start: str) -> list[ChainState]:
         """Return the states at τ = 0 of the drawn initial states, followed by the given ones."""
         settings = self.settings
         box = settings.position, settings.velocity
         drawn = sample_initial_states(self.model.blocks, settings.samples, *box, settings.seed)
-        return [self.model.begin(state, start) for state in (*drawn, *given)]
+        return [self.model.begin(state, start) for state in (*drawn, *initial)]
 
     def labels(self, starts: Sequence[ChainState], check: bool = True) -> np.ndarray:
         """Return the index of the attractor that each state reaches, after adding attractors that were not known.
@@ -172,24 +172,24 @@ class Search(Convergence):
                 if new and undecided:
                     # Whether a state stays in chaos or goes on to an orbit embedded in it, it is decided.
                     prompt = [replace(item, patience=0.0) for item in new]
-                    found, _, ends = label_arrays(self.model, prompt, *states, time)
-                    left = np.flatnonzero(found == UNDETERMINED)
+                    labels, _, ends = label_arrays(self.model, prompt, *states, time)
+                    left = np.flatnonzero(labels == UNDETERMINED)
                     undecided = [undecided[k] for k in left.tolist()]
                     states = stack_states([state_of(end) for end in ends[left]])
-                known = len(self.attractors)
+                count = len(self.attractors)
                 if not self.discover(undecided):
                     break
-                new, time = self.attractors[known:], QUICK_SEARCH * self.settings.transient
+                new, time = self.attractors[count:], QUICK_SEARCH * self.settings.transient
 
     def _verify_chaotic_labels(self, starts: Sequence[ChainState], labels: np.ndarray) -> bool:
         """Follow a few states assigned to chaotic attractors, and return whether they lead to no new attractor."""
-        known = len(self.attractors)
+        count = len(self.attractors)
         for index, attractor in enumerate(self.attractors):
             if attractor.slow or attractor.motion.kind not in CHAOS:
                 continue
             for k in np.flatnonzero(labels == index)[:VERIFIED_CHAOTIC_STATES]:
                 self.reach(starts[k])
-        return len(self.attractors) == known
+        return len(self.attractors) == count
 
     def _verify_labels(self, starts: Sequence[ChainState], labels: np.ndarray) -> bool:
         """Follow the first states until they are much closer to their attractors, and return whether all are.
@@ -214,7 +214,7 @@ class Search(Convergence):
 
     def discover(self, starts: Sequence[ChainState]) -> bool:
         """Follow up to ATTEMPTS undecided states, and return whether one leads to a new attractor."""
-        known = len(self.attractors)
+        count = len(self.attractors)
         fresh = {
             state: start for start in starts if (state := start.vector().tobytes()) not in self.unsuccessful_states
         }
@@ -222,7 +222,7 @@ class Search(Convergence):
             if len(self.unsuccessful_states) >= self.max_unsuccessful:
                 break
             self.reach(start)
-            if len(self.attractors) > known:
+            if len(self.attractors) > count:
                 return True
             self.unsuccessful_states += (state,)
         return False
@@ -237,27 +237,27 @@ class Search(Convergence):
         generator = np.random.default_rng(self.settings.seed)
         resolution = self.resolution
         for _ in range(self.trials):
-            found = self.settle(start)
-            if found is None:
+            section = self.settle(start)
+            if section is None:
                 return UNDETERMINED
             for index, attractor in enumerate(self.attractors):
-                if attractor.slow or not is_on_attractor(found, attractor.motion, resolution, self.tolerance):
+                if attractor.slow or not is_on_attractor(section, attractor.motion, resolution, self.tolerance):
                     continue
                 return index
             # Periodic orbits on a slow set are part of it.
             for index, attractor in enumerate(self.attractors):
-                if attractor.slow and is_near(found.returns, attractor.motion.returns, resolution):
+                if attractor.slow and is_near(section.returns, attractor.motion.returns, resolution):
                     return index
             index = len(self.attractors)
-            if self._add(found):
+            if self._add(section):
                 return index
             # The trajectory has come very close to an unstable motion. It continues from a perturbation off it.
-            start = perturb(found.state(), UNSTABLE_PUSH * resolution, generator)
+            start = perturb(section.state(), UNSTABLE_PUSH * resolution, generator)
         return UNDETERMINED
 
-    def _add(self, found: Returns) -> bool:
+    def _add(self, section: Returns) -> bool:
         """Add a converged motion, and its mirror image if different, and return whether they are attractors."""
-        measured = self.measure(found)
+        measured = self.measure(section)
         if measured is None:
             return False
         for candidate in self.candidates(*measured):
@@ -267,19 +267,19 @@ class Search(Convergence):
                 return True
         return False
 
-    def candidates(self, found: Returns, motion: SteadyMotion) -> Iterator[Candidate]:
+    def candidates(self, section: Returns, motion: SteadyMotion) -> Iterator[Candidate]:
         """Yield the attractors to which a converged motion may belong, the first to be accepted being the one."""
-        closed = found.has_periodic_spacing(self.tolerance)
+        closed = section.has_periodic_spacing(self.tolerance)
         mirror = self.model.chain.is_mirror_symmetric
         synchronized = mirror and motion.mean_distance < self.motion_settings.synchronization_threshold
         if mirror and not synchronized and motion.mean_distance < self.resolution:
             yield from self._slow_synchrony()
             return
-        enough = required_returns(found, self.tolerance)
+        enough = required_returns(section, self.tolerance)
         if synchronized:
             new = [Attractor(self.model, motion, Symmetry.SYNCHRONIZED, len(self.attractors), close_returns=enough)]
         else:
-            new = self._images(motion, self.is_symmetric(found) or self.is_eventually_symmetric(found), enough)
+            new = self._images(motion, self.is_symmetric(section) or self.is_eventually_symmetric(section), enough)
         yield Candidate(new, SMALLEST_RADIUS, self.capture)
         # Synchrony that does not attract is unstable. Other motion may lie on a slow set that attracts as a whole. A
         # periodic orbit embedded in chaos does not: it may attract from nearby only. The same holds if perturbations
@@ -287,7 +287,7 @@ class Search(Convergence):
         if mirror and motion.mean_distance < NEXT_TO_SYNCHRONY * self.resolution:
             return
         quick = motion.exponent[1] * SLOW_TIME * self.settings.transient < -1.0
-        if not (closed and (quick or self.is_embedded_in_chaos(found))):
+        if not (closed and (quick or self.is_embedded_in_chaos(section))):
             whole = sample_slow_set(self.model, motion, self.settings)
             images = self._images(whole, self.is_close_to_mirror_image(whole), CLOSE_RETURNS)
             yield Candidate([replace(item, slow=True) for item in images], SMALLEST_RADIUS, self.capture)
@@ -323,17 +323,21 @@ class Search(Convergence):
         exact = self.classifier(self.settings.transient, self.settings.window).measure(orbit.reference)
         if exact is None:
             return
-        found = Attractor(self.model, exact, Symmetry.SYNCHRONIZED, len(self.attractors), close_returns=CLOSE_RETURNS)
-        yield Candidate([found], SMALLEST_RADIUS, replace(self.capture, recovery=SLOW_RECOVERY))
+        attractor = Attractor(
+            self.model, exact, Symmetry.SYNCHRONIZED, len(self.attractors), close_returns=CLOSE_RETURNS
+        )
+        yield Candidate([attractor], SMALLEST_RADIUS, replace(self.capture, recovery=SLOW_RECOVERY))
 
     def accept(self, candidate: Candidate) -> list[Attractor] | None:
         """Return all attractors including a candidate; None if it does not attract from its smallest radius."""
         index = len(self.attractors)
-        known = candidate.capture.bound_radii(self.model, [*self.attractors, *candidate.attractors], self.tolerance)
+        attractors = candidate.capture.bound_radii(
+            self.model, [*self.attractors, *candidate.attractors], self.tolerance
+        )
         # A slow set that contains a known attractor is not another one.
-        if candidate.attractors[0].slow and embedded_orbits(known, index, self.tolerance):
+        if candidate.attractors[0].slow and embedded_orbits(attractors, index, self.tolerance):
             return None
-        radius = candidate.capture.radius(self.model, known, index, candidate.least, self.tolerance, self.settings)
+        radius = candidate.capture.radius(self.model, attractors, index, candidate.least, self.tolerance, self.settings)
         if radius == 0.0:
             return None
-        return [*known[:index], *(replace(item, radius=radius) for item in known[index:])]
+        return [*attractors[:index], *(replace(item, radius=radius) for item in attractors[index:])]

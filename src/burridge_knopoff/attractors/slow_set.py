@@ -29,14 +29,14 @@ def sample_slow_set(model: Model, motion: SteadyMotion, settings: SearchSettings
     for k in generator.integers(len(motion.returns), size=SLOW_STATES):
         size = SLOW_PUSH * settings.resolution * model.scale
         start = perturb(state_of(motion.returns[k]), size, generator)
-        found = visit(model, start, SLOW_TIME * settings.transient, settings.window)
+        section = visit(model, start, SLOW_TIME * settings.transient, settings.window)
         # A state that has left for another motion does not belong to the set.
         if (
-            found is not None
-            and (found.block, found.mirror_block) == blocks
-            and has_same_stop_shares(found.stop_count, motion.stop_rate)
+            section is not None
+            and (section.block, section.mirror_block) == blocks
+            and has_same_stop_shares(section.stop_count, motion.stop_rate)
         ):
-            clouds.append(found)
+            clouds.append(section)
     # The motion is continued from the last return, which has to be its own.
     returns = np.concatenate([*(cloud.returns for cloud in clouds), motion.returns])
     mirror_returns = np.concatenate([*(cloud.mirror_returns for cloud in clouds), motion.mirror_returns])

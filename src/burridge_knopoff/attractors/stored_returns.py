@@ -51,8 +51,8 @@ def returns_of_law(models: Sequence[Model], rows: Sequence[Sequence[Row]], about
     """
     held = [
         (model, slot, row.attractor.motion)
-        for model, here in zip(models, rows, strict=True)
-        for slot, row in enumerate(here)
+        for model, slots in zip(models, rows, strict=True)
+        for slot, row in enumerate(slots)
     ]
     blocks = models[0].blocks
     none = np.zeros((0, blocks))
@@ -101,12 +101,12 @@ def known_attractors(attractors: xarray.Dataset, returns: xarray.Dataset, model:
     for name, value, values in properties:
         if value not in values:
             raise refusal(f"model.{name}", value, f"{format_value(values)}, as in the files")
-    found = attractors.sel(law=model.law.name, a=model.a)
-    slots = np.flatnonzero(found["branch"].values != UNDETERMINED)
-    branch, side = found["branch"].values[slots], found["side"].values[slots]
+    table = attractors.sel(law=model.law.name, a=model.a)
+    slots = np.flatnonzero(table["branch"].values != UNDETERMINED)
+    branch, side = table["branch"].values[slots], table["side"].values[slots]
     first = np.concatenate([[0], np.cumsum(returns["return_count"].values)])
-    own = np.flatnonzero(returns["a"].values == model.a)
-    row_of = dict(zip(returns["slot"].values[own].tolist(), own.tolist(), strict=True))
+    entries = np.flatnonzero(returns["a"].values == model.a)
+    row_of = dict(zip(returns["slot"].values[entries].tolist(), entries.tolist(), strict=True))
 
     def states(slot: int) -> np.ndarray:
         part = slice(first[row_of[slot]], first[row_of[slot] + 1])
@@ -115,7 +115,7 @@ def known_attractors(attractors: xarray.Dataset, returns: xarray.Dataset, model:
 
     none, result = np.zeros((0, 2 * model.blocks)), []
     for index, slot in enumerate(slots.tolist()):
-        one, row = found.isel(attractor=slot), row_of[slot]
+        fields, row = table.isel(attractor=slot), row_of[slot]
         images = np.flatnonzero((branch == branch[index]) & (side == -side[index]))
         partner = int(images[0]) if side[index] and len(images) else index
         image = int(slots[partner])
@@ -123,19 +123,19 @@ def known_attractors(attractors: xarray.Dataset, returns: xarray.Dataset, model:
             returns=states(slot),
             mirror_returns=states(image) if model.chain.is_mirror_symmetric else none,
             spacing=returns["spacing"].values[row].item(),
-            mean_distance=one["mean_distance"].item(),
-            mean_distance_error=one["mean_distance_error"].item(),
-            stop_rate=one["stop_rate"].values,
-            kind=MotionKind(one["kind"].item()),
-            section_period=one["section_period"].item(),
-            exponent=one["lyapunov_exponent"].values,
+            mean_distance=fields["mean_distance"].item(),
+            mean_distance_error=fields["mean_distance_error"].item(),
+            stop_rate=fields["stop_rate"].values,
+            kind=MotionKind(fields["kind"].item()),
+            section_period=fields["section_period"].item(),
+            exponent=fields["lyapunov_exponent"].values,
             block=int(returns["section_block"].values[row]),
             mirror_block=int(returns["section_block"].values[row_of[image]]),
-            period=one["period"].item(),
+            period=fields["period"].item(),
         )
-        fixed = {name: one[name].item() for name in ("radius", "close_returns", "patience")}
-        symmetry = Symmetry(one["symmetry"].item())
-        result.append(Attractor(model, motion, symmetry, partner, slow=bool(one["slow"].item()), **fixed))
+        fixed = {name: fields[name].item() for name in ("radius", "close_returns", "patience")}
+        symmetry = Symmetry(fields["symmetry"].item())
+        result.append(Attractor(model, motion, symmetry, partner, slow=bool(fields["slow"].item()), **fixed))
     return KnownAttractors(model, result, branch, side)
 
 

@@ -88,12 +88,12 @@ NAMES = {
 def slot_variables(place: str) -> dict[str, Column]:
     """Return the variables of a slot, over (place, attractor), `place` being the dimension of a."""
 
-    def column(path: str, dtype: str, text: str, more: Mapping[str, Any] | None = None, *last: str) -> Column:
-        return Column((place, "attractor", *last), dtype, text, more or {}, value=attrgetter(path))
+    def column(path: str, dtype: str, text: str, attributes: Mapping[str, Any] | None = None, *last: str) -> Column:
+        return Column((place, "attractor", *last), dtype, text, attributes or {}, value=attrgetter(path))
 
     def life(text: str, value: Callable[[Lifetime], float]) -> Column:
         return replace(
-            column("row.lifetime", "f8", text), value=lambda one: one.row.lifetime and value(one.row.lifetime)
+            column("row.lifetime", "f8", text), value=lambda slot: slot.row.lifetime and value(slot.row.lifetime)
         )
 
     of = "row.attractor"
@@ -111,10 +111,12 @@ def slot_variables(place: str) -> dict[str, Column]:
         "kind": column("kind", "i1", "kind of motion", flag("i1", MotionKind)),
         "section_period": replace(column(f"{of}.motion.section_period", "i2", _POINTS), nothing=0),
         "period": column(f"{of}.motion.period", "f8", *PERIOD),
-        "lifetime": life(_LIFE, lambda one: one.mean),
-        "lifetime_low": life("lower end of the lifetime: of its 95 % confidence interval", lambda one: one.interval[0]),
+        "lifetime": life(_LIFE, lambda lifetime: lifetime.mean),
+        "lifetime_low": life(
+            "lower end of the lifetime: of its 95 % confidence interval", lambda lifetime: lifetime.interval[0]
+        ),
         "lifetime_high": life(
-            "upper end of the lifetime: of its 95 % confidence interval", lambda one: one.interval[1]
+            "upper end of the lifetime: of its 95 % confidence interval", lambda lifetime: lifetime.interval[1]
         ),
         "radius": column(
             f"{of}.radius", "f8", "capture radius: distance from its returns within which trajectories are captured"
@@ -150,8 +152,8 @@ def slot_values(
     }
     slots = {
         (k, slot): Slot(row, model, least_lifetime)
-        for k, (model, here) in enumerate(zip(models, rows, strict=True))
-        for slot, row in enumerate(here)
+        for k, (model, model_rows) in enumerate(zip(models, rows, strict=True))
+        for slot, row in enumerate(model_rows)
     }
     return column_values(slot_variables(dimension), slots, shape)
 

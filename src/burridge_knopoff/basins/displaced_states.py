@@ -63,9 +63,9 @@ class DisplacedStates:
             labels, _ = self._label(arrays)
             place = len(NEARBY) // 2
             ours = self.track.on_first_side[labels]
-            others = np.flatnonzero((labels != UNDETERMINED) & (ours != ours[place]))
-            if len(others):
-                nearest = others[np.argmin(np.abs(others - place))]
+            across = np.flatnonzero((labels != UNDETERMINED) & (ours != ours[place]))
+            if len(across):
+                nearest = across[np.argmin(np.abs(across - place))]
                 one, other = (ChainState(*(array[k] for array in arrays)) for k in (place, nearest))
                 yield (one, other) if ours[place] else (other, one)
 

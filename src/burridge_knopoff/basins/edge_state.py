@@ -205,10 +205,10 @@ def _first_side(
             raise ValueError(f"{name}: got a state that reaches no attractor by {time_limit:g}, expected one that does")
     if first == second:
         raise ValueError(f"state_b: got a state that reaches attractor {first}, as state_a does, expected another")
-    own = np.arange(len(attractors)) == first
+    side = np.arange(len(attractors)) == first
     if attractors[first].partner != second:
-        own[attractors[first].partner] = True
-    return own
+        side[attractors[first].partner] = True
+    return side
 
 
 def _settle(track: EdgeTrack, duration: float) -> PeriodicOrbit | None:
@@ -223,9 +223,9 @@ def _settle(track: EdgeTrack, duration: float) -> PeriodicOrbit | None:
     part = duration / FIRST_PART
     while part <= duration:
         track.advance(part - track.duration)
-        found = orbit_of_events(track.model, *track.events(_second_half(track)), accepted)
-        if found is not None:
-            return found
+        orbit = orbit_of_events(track.model, *track.events(_second_half(track)), accepted)
+        if orbit is not None:
+            return orbit
         part *= 2.0
     return None
 
@@ -239,7 +239,7 @@ def _measure(track: EdgeTrack, orbit: PeriodicOrbit | None, settings: EdgeSettin
     since, model = _second_half(track), track.model
     _, values = track.events(since)
     stops = values[values[:, 1] == 0]
-    found = returns_of(model, track.duration, stops[:, 0], lambda chosen: stops[chosen, 2:])
+    section = returns_of(model, track.duration, stops[:, 0], lambda chosen: stops[chosen, 2:])
     exponent, error = _exponents(track.growth(since))
     displaced = DisplacedStates(track, since, settings)
     reached = displaced.counts()
@@ -256,7 +256,7 @@ def _measure(track: EdgeTrack, orbit: PeriodicOrbit | None, settings: EdgeSettin
     return EdgeState(
         model,
         kind,
-        orbit.symmetry if orbit is not None else _symmetry(model, found),
+        orbit.symmetry if orbit is not None else _symmetry(model, section),
         orbit,
         exponent,
         error,
@@ -264,7 +264,7 @@ def _measure(track: EdgeTrack, orbit: PeriodicOrbit | None, settings: EdgeSettin
         *lifetime,
         reached,
         has_crossing,
-        found.returns if found is not None else np.zeros((0, 2 * model.blocks)),
+        section.returns if section is not None else np.zeros((0, 2 * model.blocks)),
         track.duration,
     )
 
@@ -312,8 +312,8 @@ def _kind(orbit: PeriodicOrbit | None, exponent: np.ndarray, error: np.ndarray, 
     return motion_from_period(0, math.nan, math.inf, exponent[1:], error[1:], MOTION).kind
 
 
-def _symmetry(model: Model, found: Returns | None) -> Symmetry:
-    if found is None or not model.chain.is_mirror_symmetric:
+def _symmetry(model: Model, section: Returns | None) -> Symmetry:
+    if section is None or not model.chain.is_mirror_symmetric:
         return Symmetry.ASYMMETRIC
-    reach = max(SEARCH.resolution * model.scale, SPACINGS * found.spacing)
-    return Symmetry.SYMMETRIC if is_near(found.mirror_returns, found.returns, reach) else Symmetry.ASYMMETRIC
+    reach = max(SEARCH.resolution * model.scale, SPACINGS * section.spacing)
+    return Symmetry.SYMMETRIC if is_near(section.mirror_returns, section.returns, reach) else Symmetry.ASYMMETRIC

@@ -148,10 +148,10 @@ class EdgeTrack:
     def events(self, since: int) -> tuple[np.ndarray, np.ndarray]:
         """Return times and values of the events from piece `since` on, in the form of the kernel."""
         clock = np.cumsum([0.0, *(piece.duration for piece in self.pieces)])
-        kept = range(since, len(self.pieces))
+        numbers = range(since, len(self.pieces))
         return (
-            np.concatenate([clock[k] + self.pieces[k].times for k in kept]),
-            np.concatenate([self.pieces[k].values for k in kept]),
+            np.concatenate([clock[k] + self.pieces[k].times for k in numbers]),
+            np.concatenate([self.pieces[k].values for k in numbers]),
         )
 
     def piece_at(self, time: float) -> int:
@@ -161,9 +161,9 @@ class EdgeTrack:
 
     def mean_distance(self, since: int) -> float:
         """Return ⟨J⟩ from piece `since` on."""
-        kept = self.pieces[since:]
-        total = sum(mean_distance(self.model, piece.start, piece.duration) * piece.duration for piece in kept)
-        return total / sum(piece.duration for piece in kept)
+        pieces = self.pieces[since:]
+        total = sum(mean_distance(self.model, piece.start, piece.duration) * piece.duration for piece in pieces)
+        return total / sum(piece.duration for piece in pieces)
 
     def growth(self, since: int) -> np.ndarray:
         """Return the growth rates of perturbations in each step from piece `since` on, shape (steps, vectors)."""
@@ -171,8 +171,8 @@ class EdgeTrack:
 
     def lines(self, since: int) -> Lines:
         """Return lines across the boundary from the states of the trajectory from piece `since` on."""
-        kept = self.pieces[since:]
-        return Lines(*(np.concatenate([getattr(piece, name) for piece in kept]) for name in ("place", "direction")))
+        pieces = self.pieces[since:]
+        return Lines(*(np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("place", "direction")))
 
     @cached_property
     def _scale(self) -> np.ndarray:
@@ -218,8 +218,8 @@ class EdgeTrack:
         # Outside the segment a slip could be reversed.
         velocity[velocity * np.sign(first.velocity + second.velocity) < 0.0] = 0.0
         labels, _, _ = label_arrays(self.model, self.attractors, position, velocity, stuck, time_limit)
-        known = np.flatnonzero(labels != UNDETERMINED)
-        return [ChainState(position[k], velocity[k], stuck[k]) for k in known], self.on_first_side[labels[known]]
+        index = np.flatnonzero(labels != UNDETERMINED)
+        return [ChainState(position[k], velocity[k], stuck[k]) for k in index], self.on_first_side[labels[index]]
 
     def _find_change(self) -> None:
         """Replace two states on the same side by the nearest two on the line through them on different sides.
@@ -250,7 +250,7 @@ class EdgeTrack:
             if clock > self.time_limit:
                 # Both states reach the same attractor, in contradiction to their labels.
                 raise LabelError
-            if any(one.run(clock) != Status.COMPLETED for one in (runner, other)):
+            if any(solver.run(clock) != Status.COMPLETED for solver in (runner, other)):
                 raise OrbitError(f"a = {self.model.a:.12g}: the run ends at τ = {clock:g} on the boundary")
             self.first, self.second = runner.state(), other.state()
             distance, steps = self._distance(self.first, self.second), steps + 1
@@ -265,8 +265,8 @@ class EdgeTrack:
                 place.append(self.first.vector())
                 direction.append((self.second.vector() - self.first.vector()) / distance)
         events = runner.log.events
-        seen = (np.reshape(values, (-1, 2 * blocks)) for values in (place, direction))
-        self.pieces.append(_Piece(start, clock, events.times(), events.values(), np.array(growth), *seen))
+        arrays = (np.reshape(values, (-1, 2 * blocks)) for values in (place, direction))
+        self.pieces.append(_Piece(start, clock, events.times(), events.values(), np.array(growth), *arrays))
 
 
 def _widest_change(ours: np.ndarray) -> int:

@@ -31,16 +31,16 @@ PATIENCE_MARGIN = 3.0
 STEP = 50
 
 
-def fraction_labels(searches: Sequence[Search], start: str, each: ParallelMap) -> tuple[list[Search], list[np.ndarray]]:
+def fraction_labels(searches: Sequence[Search], start: str, pool: ParallelMap) -> tuple[list[Search], list[np.ndarray]]:
     """Return the searches, and for each the index of the attractor that each drawn state reaches.
 
-    start : see `Model.begin`; each : from `running.processes.parallel_map`
+    start : see `Model.begin`; pool : from `running.processes.parallel_map`
 
     The states are independent of those from which the search started. If one reaches no known attractor, the search
     continues from it. All states are labelled again if that finds a new attractor.
     """
-    spared = each("patience reduced", partial(_reduce_patience, start=start), searches)
-    searches = [one or search for one, search in zip(spared, searches, strict=True)]
+    spared = pool("patience reduced", partial(_reduce_patience, start=start), searches)
+    searches = [reduced or search for reduced, search in zip(spared, searches, strict=True)]
     labels = [np.zeros(0, dtype=np.intc) for _ in searches]
     waiting = list(range(len(searches)))
     while waiting:
@@ -48,25 +48,25 @@ def fraction_labels(searches: Sequence[Search], start: str, each: ParallelMap) -
             labels[k] = labels[k][:0]
         wide = [k for k in waiting if required_samples(searches[k].settings.fraction_width)]
         while wide:
-            those, firsts = [searches[k] for k in wide], [len(labels[k]) for k in wide]
+            batch, firsts = [searches[k] for k in wide], [len(labels[k]) for k in wide]
             counts = [further_states(labels[k], searches[k].settings.fraction_width) for k in wide]
-            found = each("labelled for basin fractions", partial(_label_next, start=start), those, firsts, counts)
-            for k, part in zip(wide, found, strict=True):
+            parts = pool("labelled for basin fractions", partial(_label_next, start=start), batch, firsts, counts)
+            for k, part in zip(wide, parts, strict=True):
                 labels[k] = np.concatenate([labels[k], part])
             enough = {k: required_states(labels[k], searches[k].settings.fraction_width) for k in wide}
-            labels = [one[: enough.get(k, len(one))] for k, one in enumerate(labels)]
+            labels = [numbers[: enough.get(k, len(numbers))] for k, numbers in enumerate(labels)]
             wide = [k for k in wide if enough[k] is None]
         lost = [k for k in waiting if (labels[k] == UNDETERMINED).any()]
-        those = [searches[k] for k in lost]
-        looked = each(
+        batch = [searches[k] for k in lost]
+        looked = pool(
             "searched from undetermined states",
             partial(_search_from_undetermined, start=start),
-            those,
+            batch,
             [labels[k] for k in lost],
         )
         for k, (search, _) in zip(lost, looked, strict=True):
             searches[k] = search
-        waiting = [k for k, (_, more) in zip(lost, looked, strict=True) if more]
+        waiting = [k for k, (_, gain) in zip(lost, looked, strict=True) if gain]
     return searches, labels
 
 

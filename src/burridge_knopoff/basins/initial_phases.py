@@ -33,9 +33,9 @@ def single_block_frequencies(model: Model) -> np.ndarray:
     """
     chain = model.chain
     if not has_free_ends(chain):
-        given = f"{chain.blocks} blocks, {'network' if chain.is_network else chain.ends}"
+        text = f"{chain.blocks} blocks, {'network' if chain.is_network else chain.ends}"
         raise ValueError(
-            f"chain: got {given}, expected a row of at least three blocks with open ends, for states given by phases"
+            f"chain: got {text}, expected a row of at least three blocks with open ends, for states given by phases"
         )
     return np.sqrt(chain.diagonal / chain.masses)
 
@@ -76,10 +76,10 @@ def oscillating_states(
     angle = np.empty((len(amplitude), model.chain.blocks))
     angle[:, 0], angle[:, -1], angle[:, 1:-1] = common_phase, common_phase + phase_difference, inner_phase
     angle = np.radians(angle)
-    own = np.tile(amplitude[:, None], angle.shape[1])
-    own[:, 1:-1] *= inner_share
-    position = model.sliding_offset + own * np.cos(angle)
-    velocity = model.v - own * single_block_frequencies(model) * np.sin(angle)
+    amplitudes = np.tile(amplitude[:, None], angle.shape[1])
+    amplitudes[:, 1:-1] *= inner_share
+    position = model.sliding_offset + amplitudes * np.cos(angle)
+    velocity = model.v - amplitudes * single_block_frequencies(model) * np.sin(angle)
     standing: np.ndarray = np.any(velocity < 0.0, axis=1)
     return position, np.maximum(velocity, 0.0), standing
 

@@ -89,14 +89,14 @@ class _Pairs:
         for batch in range(BATCHES):
             ages = np.unique(age[self.batch == batch])
             rooms = size * _AGE_FACTOR**ages / np.sum(_AGE_FACTOR**ages)
-            for one, room in zip(ages, rooms, strict=True):
-                members = np.flatnonzero((self.batch == batch) & (age == one))
+            for value, room in zip(ages, rooms, strict=True):
+                members = np.flatnonzero((self.batch == batch) & (age == value))
                 chosen, weight = _select(self.weight[members], max(1, int(room)), generator)
                 indices.append(members[chosen])
                 weights.append(weight)
         index = np.concatenate(indices)
-        here = (self.start[index], self.direction[index], self.labels[:, index], self.batch[index])
-        return _Pairs(*here, np.concatenate(weights), age[index], self.never)
+        columns = (self.start[index], self.direction[index], self.labels[:, index], self.batch[index])
+        return _Pairs(*columns, np.concatenate(weights), age[index], self.never)
 
     def divide(self, separation: float, label: Label) -> _Pairs:
         """Return all parts of the pairs, `separation` apart."""
@@ -149,13 +149,13 @@ def follow_pairs(
     direction = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     ends = np.array([labels_of(start), labels_of(start + longest * direction)])
     pairs = _Pairs(start, direction, ends, batch, np.ones(len(batch)), np.full(len(batch), never), never)
-    found = []
+    rows = []
     for separation in (*separations[1:], 0.0):
-        known, different = pairs.is_labelled, pairs.is_different
-        found.append((pairs.weights(different), pairs.weights(known), different.sum(), known.sum()))
+        labelled, different = pairs.is_labelled, pairs.is_different
+        rows.append((pairs.weights(different), pairs.weights(labelled), different.sum(), labelled.sum()))
         if separation and len(batch):
             pairs = pairs.select(size, generator).divide(separation * width, labels_of)
-    weights, all_weights, counts, all_counts = (np.array(part) for part in zip(*found, strict=True))
+    weights, all_weights, counts, all_counts = (np.array(part) for part in zip(*rows, strict=True))
     return PairCounts(weights.T, all_weights.T, counts, all_counts)
 
 

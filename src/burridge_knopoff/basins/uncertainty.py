@@ -66,14 +66,14 @@ def uncertainty_exponent(pairs: PairCounts) -> Exponent:
     y, without = (np.log(np.where(values > 0.0, values, np.nan)) for values in (share, shares))
     local, locals_ = (np.diff(values, axis=1) / np.diff(x) for values in (y, without))
     nothing = np.nan, np.nan
-    found = _jackknife(share, shares), _jackknife(local, locals_)
+    exponents = _jackknife(share, shares), _jackknife(local, locals_)
     # Fitted separations are consecutive: one with many different pairs by chance, among others with few, is left out.
     # Different pairs in a single batch leave no error estimate.
     enough = (pairs.different_count >= _FEWEST_PAIRS) & (np.count_nonzero(pairs.different_weight, axis=0) > 1)
     enough = enough[FITTED_FROM:]
     count = len(enough) if enough.all() else int(np.argmin(enough))
     if count < _FEWEST_SEPARATIONS:
-        return Exponent(ExponentKind.UNKNOWN, *found, nothing, nothing)
+        return Exponent(ExponentKind.UNKNOWN, *exponents, nothing, nothing)
     fitted = slice(FITTED_FROM, FITTED_FROM + count)
     line, lines = (_fit(x[fitted], values[:, fitted], 1) for values in (y, without))
     parabola, parabolas = (_fit(x[fitted], values[:, fitted], 2) for values in (y, without))
@@ -81,14 +81,14 @@ def uncertainty_exponent(pairs: PairCounts) -> Exponent:
     (alpha,), (alpha_error,) = _jackknife(line, lines)
     (change,), (change_error,) = _jackknife(span * parabola, span * parabolas)
     if abs(change) > max(_CHANGE, _STANDARD_ERRORS * change_error):
-        return Exponent(ExponentKind.VARYING, *found, nothing, (change, change_error))
-    return Exponent(ExponentKind.SINGLE, *found, (alpha, alpha_error), (change, change_error))
+        return Exponent(ExponentKind.VARYING, *exponents, nothing, (change, change_error))
+    return Exponent(ExponentKind.SINGLE, *exponents, (alpha, alpha_error), (change, change_error))
 
 
 def _share(pairs: PairCounts, batches: np.ndarray) -> np.ndarray:
     """Return f from some batches of pairs, shape (n, BATCHES), as (n, separations); NaN where no pair has labels."""
-    different, known = (weights[batches].sum(axis=1) for weights in (pairs.different_weight, pairs.labelled_weight))
-    return np.divide(different, known, out=np.full(known.shape, np.nan), where=known > 0.0)
+    different, total = (weights[batches].sum(axis=1) for weights in (pairs.different_weight, pairs.labelled_weight))
+    return np.divide(different, total, out=np.full(total.shape, np.nan), where=total > 0.0)
 
 
 def _fit(x: np.ndarray, y: np.ndarray, degree: int) -> np.ndarray:

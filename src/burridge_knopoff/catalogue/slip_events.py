@@ -68,9 +68,9 @@ def catalogue_dataset(
     """
     import xarray
 
-    own = {"a": model.a, "v": model.v, "slip_block": events.slip_block, "slip_distance": events.slip}
+    extra = {"a": model.a, "v": model.v, "slip_block": events.slip_block, "slip_distance": events.slip}
     variables = {**CATALOGUE_VARIABLES, **(PROFILE_VARIABLES if len(events.slip) else {})}
-    values = {name: own[name] if name in own else getattr(events, name) for name in variables}
+    values = {name: extra[name] if name in extra else getattr(events, name) for name in variables}
     data = xarray_variables(variables, values)
     if len(events.slip):
         data["blocks"][2]["sample_dimension"] = "slip"

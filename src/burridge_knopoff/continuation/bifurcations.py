@@ -42,16 +42,16 @@ class Entry:
         return self.bifurcation.a if self.bifurcation else 0.5 * (self.low + self.high)
 
 
-def entries(one: xarray.Dataset, changes: Sequence[BranchChange], followed: FollowedOrbits) -> list[Entry]:
+def entries(table: xarray.Dataset, changes: Sequence[BranchChange], followed: FollowedOrbits) -> list[Entry]:
     """Return the entries of one law: one or two for each change of a branch, one for each bifurcation passed.
 
     A change from one orbit to another has an entry for the end of the first and one for the beginning of the second,
     unless both are the same bifurcation.
     """
-    a, branch, kind = (one[name].values for name in ("a", "branch", "kind"))
-    slots = slots_of_branches(one)
-    grid = np.flatnonzero(one["in_grid"].values[: len(slots)] == 1)
-    found = []
+    a, branch, kind = (table[name].values for name in ("a", "branch", "kind"))
+    slots = slots_of_branches(table)
+    grid = np.flatnonzero(table["in_grid"].values[: len(slots)] == 1)
+    entry_list = []
     for change in changes:
         ends: list[Bifurcation] = []
         low, high = change.low, change.high
@@ -73,10 +73,10 @@ def entries(one: xarray.Dataset, changes: Sequence[BranchChange], followed: Foll
             _motion(kind, slots, range(low, below - 1, -1), change.from_branch),
             _motion(kind, slots, range(high, above + 1), change.to_branch),
         )
-        lifetime = _lifetime(one, change)
-        own = change.change, change.from_branch, change.to_branch, float(a[low]), float(a[high]), motion, lifetime
-        found += [Entry(*own, bifurcation.kind, bifurcation) for bifurcation in ends] or [
-            Entry(*own, _kind_without_orbit(change, kind), None)
+        lifetime = _lifetime(table, change)
+        fields = change.change, change.from_branch, change.to_branch, float(a[low]), float(a[high]), motion, lifetime
+        entry_list += [Entry(*fields, bifurcation.kind, bifurcation) for bifurcation in ends] or [
+            Entry(*fields, _kind_without_orbit(change, kind), None)
         ]
     for place, segment in zip(followed.places, followed.segments, strict=True):
         n, own_kind = int(branch[place]), int(kind[place])
@@ -87,9 +87,9 @@ def entries(one: xarray.Dataset, changes: Sequence[BranchChange], followed: Foll
                     max(values[values <= bifurcation.a], default=np.nan),
                     min(values[values >= bifurcation.a], default=np.nan),
                 )
-                own = Change.PASSED, n, n, *nearest, (own_kind, own_kind), (np.nan, np.nan)
-                found.append(Entry(*own, bifurcation.kind, bifurcation))
-    return found
+                fields = Change.PASSED, n, n, *nearest, (own_kind, own_kind), (np.nan, np.nan)
+                entry_list.append(Entry(*fields, bifurcation.kind, bifurcation))
+    return entry_list
 
 
 def _motion(kind: np.ndarray, slots: Sequence[Mapping[int, int]], places: Iterable[int], branch: int) -> int:
@@ -97,11 +97,13 @@ def _motion(kind: np.ndarray, slots: Sequence[Mapping[int, int]], places: Iterab
     return next((int(kind[k, slots[k][branch]]) for k in places if branch in slots[k]), int(MotionKind.UNDETERMINED))
 
 
-def _lifetime(one: xarray.Dataset, change: BranchChange) -> tuple[float, float]:
+def _lifetime(table: xarray.Dataset, change: BranchChange) -> tuple[float, float]:
     """Return the interval of the lifetime of chaos at a bifurcation, the shorter one of both sides."""
     sides = [(change.low, change.before), (change.high, change.after)]
-    known = [(one["lifetime_low"].values[side], one["lifetime_high"].values[side]) for side in sides if side[1] >= 0]
-    return min((interval for interval in known if np.isfinite(interval[0])), default=(np.nan, np.nan))
+    intervals = [
+        (table["lifetime_low"].values[side], table["lifetime_high"].values[side]) for side in sides if side[1] >= 0
+    ]
+    return min((interval for interval in intervals if np.isfinite(interval[0])), default=(np.nan, np.nan))
 
 
 def _kind_without_orbit(change: BranchChange, kind: np.ndarray) -> BifurcationKind:

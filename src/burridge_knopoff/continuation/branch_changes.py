@@ -95,9 +95,9 @@ def slots_of_branches(refined: xarray.Dataset) -> list[dict[int, int]]:
     count = int(np.isfinite(refined["a"].values).sum())
     branch, side = refined["branch"].values[:count], refined["side"].values[:count]
     rows = []
-    for own, sides in zip(branch, side, strict=True):
-        order = [slot for slot in np.argsort(sides, kind="stable") if own[slot] >= 0]
-        rows.append({int(own[slot]): int(slot) for slot in order})
+    for numbers, sides in zip(branch, side, strict=True):
+        order = [slot for slot in np.argsort(sides, kind="stable") if numbers[slot] >= 0]
+        rows.append({int(numbers[slot]): int(slot) for slot in order})
     return rows
 
 

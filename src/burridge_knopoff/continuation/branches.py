@@ -45,19 +45,19 @@ def branches(
     numbered from 1 in the order of their first a, and of ⟨J⟩ there.
     """
     numbering = _Numbering(matcher, reach)
-    shown = [outlines(here) for here in attractors]
+    outline_maps = [outlines(row) for row in attractors]
     following = dict(pairwise(grid))
     # Attractors that do not change up to the next value of the grid are mostly not followed in between. Their numbers
     # are reserved: {index at the next value of the grid: number}.
     held: dict[int, int] = {}
-    found = []
-    for place, (value, here, now) in enumerate(zip(a, attractors, shown, strict=True)):
-        branch, side = numbering.numbered(value, here, now, numbering.known(value, now, held, place in grid))
+    numbers = []
+    for place, (value, row, now) in enumerate(zip(a, attractors, outline_maps, strict=True)):
+        branch, side = numbering.numbered(value, row, now, numbering.matches(value, now, held, place in grid))
         if place in following:
-            same = matcher.match_unchanged(now, shown[following[place]])
+            same = matcher.match_unchanged(now, outline_maps[following[place]])
             held = {new: int(branch[old]) for new, old in same.items()}
-        found.append((branch, side))
-    return [branch for branch, _ in found], [side for _, side in found]
+        numbers.append((branch, side))
+    return [branch for branch, _ in numbers], [side for _, side in numbers]
 
 
 @dataclass
@@ -69,15 +69,15 @@ class _Numbering:
     seen: dict[int, KnownBranch] = field(default_factory=dict)
     following: int = 1
 
-    def known(self, a: float, now: Mapping[int, Outline], held: Mapping[int, int], on_grid: bool) -> dict[int, int]:
+    def matches(self, a: float, now: Mapping[int, Outline], held: Mapping[int, int], on_grid: bool) -> dict[int, int]:
         """Return {index of an attractor at a: number of the branch that it continues}.
 
         Branches that exist at the previous value of a are matched first, then those that vanished earlier.
         """
         if on_grid:
-            found = dict(held)
+            numbers = dict(held)
         else:
-            found = self.matcher.match_unchanged({number: self.seen[number].outline for number in held.values()}, now)
+            numbers = self.matcher.match_unchanged({number: self.seen[number].outline for number in held.values()}, now)
         near = {
             number: item
             for number, item in self.seen.items()
@@ -86,23 +86,23 @@ class _Numbering:
         last = max((item.a for item in near.values()), default=a)
         for recent in (True, False):
             old = {
-                n: item.outline for n, item in near.items() if (item.a == last) == recent and n not in found.values()
+                n: item.outline for n, item in near.items() if (item.a == last) == recent and n not in numbers.values()
             }
-            found |= self.matcher.match(old, {i: item for i, item in now.items() if i not in found})
-        return found
+            numbers |= self.matcher.match(old, {i: item for i, item in now.items() if i not in numbers})
+        return numbers
 
     def numbered(
-        self, a: float, here: Sequence[Attractor], now: Mapping[int, Outline], found: Mapping[int, int]
+        self, a: float, attractors: Sequence[Attractor], now: Mapping[int, Outline], numbers: Mapping[int, int]
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return the branch and the side of each attractor at a, with new numbers for those that continue no branch."""
-        branch, side = np.full(len(here), UNDETERMINED), np.zeros(len(here), dtype=int)
-        for i in sorted(now, key=lambda i: (round(here[i].motion.mean_distance, 6), i)):
-            number = found.get(i)
+        branch, side = np.full(len(attractors), UNDETERMINED), np.zeros(len(attractors), dtype=int)
+        for i in sorted(now, key=lambda i: (round(attractors[i].motion.mean_distance, 6), i)):
+            number = numbers.get(i)
             if number is None:
-                synchronized = here[i].symmetry == Symmetry.SYNCHRONIZED
-                number = 0 if synchronized and 0 not in (*found.values(), *branch) else self.following
+                synchronized = attractors[i].symmetry == Symmetry.SYNCHRONIZED
+                number = 0 if synchronized and 0 not in (*numbers.values(), *branch) else self.following
                 self.following += number != 0
-            branch[i], partner = number, here[i].partner
+            branch[i], partner = number, attractors[i].partner
             if partner != i:
                 side[i] = _side(now[i], self.seen.get(number))
                 branch[partner], side[partner] = number, -side[i]
@@ -114,12 +114,12 @@ def _side(outline: Outline, before: KnownBranch | None) -> int:
     """Return the side of the first of a mirror pair: that of the nearer one of the previous pair, if there is one."""
     if before is None or before.side == 0:
         return _orientation(outline.attractor)
-    own, mirrored = outline.distances(before.outline)[:, 0]
-    return before.side if own <= mirrored else -before.side
+    direct, mirrored = outline.distances(before.outline)[:, 0]
+    return before.side if direct <= mirrored else -before.side
 
 
 def _orientation(attractor: Attractor) -> int:
     """Return 1 if the first block leads the last one, at the returns, by more than in the mirrored motion, else −1."""
     last = len(attractor.motion.stop_rate) - 1
-    own, mirrored = attractor.motion.returns, attractor.motion.mirror_returns
-    return 1 if np.mean(own[:, 0] - own[:, last]) > np.mean(mirrored[:, 0] - mirrored[:, last]) else -1
+    returns, mirrored = attractor.motion.returns, attractor.motion.mirror_returns
+    return 1 if np.mean(returns[:, 0] - returns[:, last]) > np.mean(mirrored[:, 0] - mirrored[:, last]) else -1

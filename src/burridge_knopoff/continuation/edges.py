@@ -73,45 +73,45 @@ class Approach:
     size: float = np.nan
 
 
-def attractor_pairs(known: KnownAttractors) -> list[tuple[int, int]]:
+def attractor_pairs(table: KnownAttractors) -> list[tuple[int, int]]:
     """Return the pairs of attractors at one a, by their indices, between which boundaries are followed.
 
     These are all pairs of branches, and of mirror images. Transient chaos is not an attractor. Between two mirror pairs
     one boundary of each kind suffices.
     """
-    branch, side = known.branch, known.side
+    branch, side = table.branch, table.side
     return [
         (first, second)
-        for first, second in combinations(_lasting(known), 2)
+        for first, second in combinations(_lasting(table), 2)
         if side[first] >= 0 and (side[second] >= 0 or branch[first] == branch[second])
     ]
 
 
-def _lasting(known: KnownAttractors) -> list[int]:
-    return [k for k, item in enumerate(known.attractors) if item.motion.kind != MotionKind.TRANSIENT_CHAOS]
+def _lasting(table: KnownAttractors) -> list[int]:
+    return [k for k, item in enumerate(table.attractors) if item.motion.kind != MotionKind.TRANSIENT_CHAOS]
 
 
 def edge_between(
-    known: KnownAttractors, pair: tuple[int, int], settings: EdgeSettings, time_limit: float
+    table: KnownAttractors, pair: tuple[int, int], settings: EdgeSettings, time_limit: float
 ) -> Edge | None:
     """Return the edge state between two attractors, given by their indices.
 
     If the boundary is lost, None is returned and the reason printed.
     """
-    lasting = _lasting(known)
+    lasting = _lasting(table)
     places = {index: k for k, index in enumerate(lasting)}
-    attractors = [replace(known.attractors[k], partner=places[known.attractors[k].partner]) for k in lasting]
-    one, other = (known.attractors[k].motion.state() for k in pair)
+    attractors = [replace(table.attractors[k], partner=places[table.attractors[k].partner]) for k in lasting]
+    one, other = (table.attractors[k].motion.state() for k in pair)
     try:
-        state = edge_state(known.model, one, other, attractors, settings, time_limit=time_limit)
+        state = edge_state(table.model, one, other, attractors, settings, time_limit=time_limit)
     except ValueError as error:
-        first, second = known.branch[list(pair)]
-        print(f"{known.model.law.name}, branches {first} and {second}: {error}")
+        first, second = table.branch[list(pair)]
+        print(f"{table.model.law.name}, branches {first} and {second}: {error}")
         return None
-    reached = np.zeros((2, len(known.attractors)), dtype=int)
+    reached = np.zeros((2, len(table.attractors)), dtype=int)
     reached[:, lasting] = state.reached_count
     largest = np.array(lasting)[state.reached_count.argmax(axis=1)]
-    return Edge(state, reached, known.branch[largest], known.side[largest])
+    return Edge(state, reached, table.branch[largest], table.side[largest])
 
 
 def distinct_edges(edges: Iterable[Edge | None]) -> list[Edge]:
@@ -189,11 +189,11 @@ def approach(model: Model, state: ChainState, edges: Sequence[Edge], branch: int
     """
     for index, edge in enumerate(edges):
         model.at(edge.a).check_same(edge.state.model, f"edges[{index}].model")
-    found = visit(model, state, 0.0, APPROACH)
-    if found is None:
+    section = visit(model, state, 0.0, APPROACH)
+    if section is None:
         return Approach()
-    size = float(np.ptp(found.returns, axis=0).max())
-    tree = cKDTree(found.returns)
+    size = float(np.ptp(section.returns, axis=0).max())
+    tree = cKDTree(section.returns)
     nearest = Approach(size=size)
     for number, edge in enumerate(edges):
         if branch not in edge.branch or edge.state.orbit is None:
@@ -203,7 +203,8 @@ def approach(model: Model, state: ChainState, edges: Sequence[Edge], branch: int
         except OrbitError:
             continue
         distance = min(
-            (float(tree.query(one, p=np.inf)[0].min()) for one in _states_at_stops(orbit, found.block)), default=np.inf
+            (float(tree.query(states, p=np.inf)[0].min()) for states in _states_at_stops(orbit, section.block)),
+            default=np.inf,
         )
         if not distance >= nearest.distance:
             nearest = Approach(number, distance, size)
@@ -215,9 +216,9 @@ def _states_at_stops(orbit: PeriodicOrbit, block: int) -> Iterator[np.ndarray]:
     values = flow(orbit.model, orbit.reference, orbit.period)[0].log.events.values()
     blocks = orbit.model.blocks
     stops = values[:, 1] == 0
-    own = values[stops & (values[:, 0] == block), 2:]
-    if len(own):
-        yield own
+    states = values[stops & (values[:, 0] == block), 2:]
+    if len(states):
+        yield states
     image = values[stops & (values[:, 0] == blocks + 1 - block), 2:]
     if orbit.model.chain.is_mirror_symmetric and len(image):
         yield image[:, mirror_order(blocks)]

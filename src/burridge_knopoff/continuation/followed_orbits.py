@@ -76,60 +76,60 @@ class FollowedOrbits:
 
 def follow_orbits(
     model: Model,
-    one: xarray.Dataset,
+    table: xarray.Dataset,
     changes: Sequence[BranchChange],
     processes: int = 1,
     folder: str | Path | None = None,
 ) -> FollowedOrbits:
     """Follow every attractor of one law that is a periodic orbit.
 
-    one : the attractors at all values of a; between values of the grid only changing branches are followed
+    table : the attractors at all values of a; between values of the grid only changing branches are followed
     processes, folder : number of processes, and the cache of their results; see `parallel_map`. The results do not
         depend on them
     """
-    largest = float(np.nanmax(one["a"].values))
-    places = _places(one, changes)
-    models = [model.at(float(one["a"].values[k])) for k, _ in places]
-    states = ([one[name].values[place] for place in places] for name in ("position", "velocity"))
-    found = FollowedOrbits()
-    with parallel_map(processes, folder) as each:
-        orbits = each("periodic orbits", _periodic_orbit, models, *states, span=(0.0, PERIODIC_ORBITS))
+    largest = float(np.nanmax(table["a"].values))
+    places = _places(table, changes)
+    models = [model.at(float(table["a"].values[k])) for k, _ in places]
+    states = ([table[name].values[place] for place in places] for name in ("position", "velocity"))
+    followed = FollowedOrbits()
+    with parallel_map(processes, folder) as pool:
+        orbits = pool("periodic orbits", _periodic_orbit, models, *states, span=(0.0, PERIODIC_ORBITS))
         closed = [pair for pair in zip(places, orbits, strict=True) if not _is_lost(model, pair[1])]
-        for following in _rounds(_sort(closed), found, ORBITS_PER_PROCESS * processes):
-            before = len(found.segments)
+        for following in _rounds(_sort(closed), followed, ORBITS_PER_PROCESS * processes):
+            before = len(followed.segments)
             twice, upward = [orbit for _, orbit in following for _ in range(2)], [False, True] * len(following)
-            share = PERIODIC_ORBITS + (1.0 - PERIODIC_ORBITS) * len(found.of_place) / len(closed)
-            halves = each("followed", partial(_half, largest=largest), twice, upward, span=(share, share))
+            share = PERIODIC_ORBITS + (1.0 - PERIODIC_ORBITS) * len(followed.of_place) / len(closed)
+            halves = pool("followed", partial(_half, largest=largest), twice, upward, span=(share, share))
             for (place, orbit), *both in zip(following, halves[::2], halves[1::2], strict=True):
-                if not found.assign(place, orbit, before) and not any(_is_lost(model, item) for item in both):
-                    found.add(place, BranchSegment(*both))
-    return found
+                if not followed.assign(place, orbit, before) and not any(_is_lost(model, item) for item in both):
+                    followed.add(place, BranchSegment(*both))
+    return followed
 
 
-def _places(one: xarray.Dataset, changes: Sequence[BranchChange]) -> list[Place]:
+def _places(table: xarray.Dataset, changes: Sequence[BranchChange]) -> list[Place]:
     """Return the places of the periodic orbits that are followed: those on the grid of a, and those next to changes."""
-    branch, side = (one[name].values for name in ("branch", "side"))
-    closed = np.array([[is_followed(one, *at) for at in np.ndindex(branch.shape)]]).reshape(branch.shape)
+    branch, side = (table[name].values for name in ("branch", "side"))
+    closed = np.array([[is_followed(table, *at) for at in np.ndindex(branch.shape)]]).reshape(branch.shape)
     closed &= (branch >= 0) & (side >= 0)
-    wanted = np.repeat(one["in_grid"].values[:, None] == 1, branch.shape[1], axis=1)
+    mask = np.repeat(table["in_grid"].values[:, None] == 1, branch.shape[1], axis=1)
     for change in changes:
         for k, slot in ((change.low, change.before), (change.high, change.after)):
-            wanted[k, slot] |= slot >= 0
-    return [(int(k), int(slot)) for k, slot in np.argwhere(closed & wanted)]
+            mask[k, slot] |= slot >= 0
+    return [(int(k), int(slot)) for k, slot in np.argwhere(closed & mask)]
 
 
-def _is_lost(model: Model, found: PeriodicOrbit | HalfBranch | OrbitError) -> bool:
+def _is_lost(model: Model, outcome: PeriodicOrbit | HalfBranch | OrbitError) -> bool:
     """Return whether there is an error instead of an orbit, and print it."""
-    if isinstance(found, OrbitError):
-        print(f"{model.law.name}: {found}")
-    return isinstance(found, OrbitError)
+    if isinstance(outcome, OrbitError):
+        print(f"{model.law.name}: {outcome}")
+    return isinstance(outcome, OrbitError)
 
 
-def _rounds(left: Sequence[Placed], found: FollowedOrbits, count: int) -> Iterator[list[Placed]]:
+def _rounds(left: Sequence[Placed], followed: FollowedOrbits, count: int) -> Iterator[list[Placed]]:
     """Yield the next orbits that lie on no known segment, `count` at a time; segments of a round are known after it."""
     following: list[Placed] = []
     for place, orbit in left:
-        if not found.assign(place, orbit):
+        if not followed.assign(place, orbit):
             following.append((place, orbit))
         if len(following) == count:
             yield following
@@ -154,16 +154,16 @@ def _periodic_orbit(model: Model, position: np.ndarray, velocity: np.ndarray) ->
     state = state_of(np.concatenate([position - model.sliding_offset, velocity]))
     try:
         try:
-            found = limit_cycle(model, state)
+            orbit = limit_cycle(model, state)
         except OrbitError:
             # A slowly attracting orbit is distinguished from nearby ones only after a longer time.
-            found = limit_cycle(model, state, LONG_SETTLING)
-        if multipliers(found).unstable_count:
+            orbit = limit_cycle(model, state, LONG_SETTLING)
+        if multipliers(orbit).unstable_count:
             raise OrbitError(f"a = {model.a:.12g}: the periodic orbit next to the motion is unstable")
     except OrbitError as error:
         return error
-    found.forget_events()
-    return found
+    orbit.forget_events()
+    return orbit
 
 
 def _half(orbit: PeriodicOrbit, upward: bool, largest: float) -> HalfBranch | OrbitError:
@@ -171,17 +171,17 @@ def _half(orbit: PeriodicOrbit, upward: bool, largest: float) -> HalfBranch | Or
     try:
         # Steps are large enough to cross a wide grid.
         step = max(FOLLOWING.largest_step, largest / orbit.model.chain.own_units.slope / FOLLOWING.max_orbits)
-        found = follow_half_branch(
+        branch = follow_half_branch(
             orbit, upward, (LEAST_A, largest), UNSTABLE_ORBITS, replace(FOLLOWING, largest_step=step)
         )
         # Cached properties that are computed here go with the orbits to the calling process.
         _ = (
-            [(bifurcation.stick_time, bifurcation.mean_distance) for bifurcation in found.bifurcations],
-            [point.multipliers for point in found.orbits],
+            [(bifurcation.stick_time, bifurcation.mean_distance) for bifurcation in branch.bifurcations],
+            [point.multipliers for point in branch.orbits],
         )
-        _ = [point.orbit.mean_distance for point in found.drawn_orbits]
+        _ = [point.orbit.mean_distance for point in branch.drawn_orbits]
     except OrbitError as error:
         return error
-    for point in found.orbits:
+    for point in branch.orbits:
         point.orbit.forget_events()
-    return found
+    return branch

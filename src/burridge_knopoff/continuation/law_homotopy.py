@@ -41,14 +41,14 @@ def follow_law(first: Model, second: Model, start: ChainState, settings: SearchS
     for share in np.linspace(0.0, 1.0, STEPS + 1).tolist():
         law = second.law if share == 1.0 else blend(first.law, second.law, share)
         model = replace(first, law=law)
-        found = visit(model, start, settings.transient, settings.window)
-        if found is None:
+        section = visit(model, start, settings.transient, settings.window)
+        if section is None:
             return None
         if before is not None:
-            pairs = ((before.returns, found.returns), (found.returns, before.returns))
+            pairs = ((before.returns, section.returns), (section.returns, before.returns))
             if not any(is_near(*pair, SAME_SET * model.scale) for pair in pairs):
                 return None
-        before, start = found, found.state()
+        before, start = section, section.state()
     return before
 
 
@@ -80,12 +80,12 @@ def match_branches(
         tried += [(row, places[i], first[number][places[i]], len(places) / len(chosen)) for i in chosen]
     models = ([law[k] for _, k, *_ in tried] for law in (firsts, seconds))
     starts = [start for *_, start, _ in tried]
-    with parallel_map(processes) as each:
+    with parallel_map(processes) as pool:
         follow = partial(follow_law, settings=settings)
-        followed = each("continued to the other law", follow, *models, starts)
+        followed = pool("continued to the other law", follow, *models, starts)
     arrivals = np.zeros((len(numbers[0]), len(numbers[1])))
-    for (row, k, _, weight), found in zip(tried, followed, strict=True):
-        near = {n: _distance(found, second[n][k]) for n in numbers[1] if k in second[n]} if found else {}
+    for (row, k, _, weight), section in zip(tried, followed, strict=True):
+        near = {n: _distance(section, second[n][k]) for n in numbers[1] if k in second[n]} if section else {}
         best = min(near, key=lambda n: near[n], default=None)
         if best is not None and near[best] <= SAME_SET * firsts[k].scale:
             arrivals[row, numbers[1].index(best)] += weight
@@ -93,7 +93,7 @@ def match_branches(
     return {0: 0} | {numbers[1][column]: numbers[0][row] for row, column in pairs if arrivals[row, column] > 0}
 
 
-def _distance(found: Returns, state: ChainState) -> float:
+def _distance(section: Returns, state: ChainState) -> float:
     """Return the distance of the state at a stop from the nearest return of a motion or of its mirror image."""
-    tree = cKDTree(np.concatenate([found.returns, found.mirror_returns]))
+    tree = cKDTree(np.concatenate([section.returns, section.mirror_returns]))
     return float(tree.query(state.vector(), p=np.inf)[0])

@@ -41,7 +41,7 @@ class Outline:
         return cKDTree(self.attractor.motion.returns)
 
     @cached_property
-    def own(self) -> np.ndarray:
+    def returns(self) -> np.ndarray:
         """An even selection of the returns."""
         return _thin(self.attractor.motion.returns)
 
@@ -55,12 +55,12 @@ class Outline:
 
         The rows, of shape (2, 2), are for the set and its mirror image. bound : larger distances may be infinite
         """
-        found = np.full((2, 2), np.inf)
-        found[0] = distance(self.own, other.tree, bound=bound), distance(other.own, self.tree, bound=bound)
+        distances = np.full((2, 2), np.inf)
+        distances[0] = distance(self.returns, other.tree, bound=bound), distance(other.returns, self.tree, bound=bound)
         if len(self.mirrored) and len(other.mirrored):
             pairs = (self.mirrored, other.tree), (other.mirrored, self.tree)
-            found[1] = [distance(*pair, bound=bound) for pair in pairs]
-        return np.sort(found, axis=1)
+            distances[1] = [distance(*pair, bound=bound) for pair in pairs]
+        return np.sort(distances, axis=1)
 
 
 def _thin(returns: np.ndarray) -> np.ndarray:
@@ -112,8 +112,8 @@ class Matcher:
 
     def match_unchanged(self, before: Mapping[int, Outline], after: Mapping[int, Outline]) -> dict[int, int]:
         """Return {key in `after`: key in `before`} of the sets that match with the same kind, symmetry and period."""
-        found = self.match(before, after)
-        return {new: old for new, old in found.items() if self._features(before[old]) == self._features(after[new])}
+        pairs = self.match(before, after)
+        return {new: old for new, old in pairs.items() if self._features(before[old]) == self._features(after[new])}
 
     def unmatched(
         self, before: Mapping[int, Outline], after: Mapping[int, Outline]

@@ -45,42 +45,42 @@ def refine_searches(
     searches: Sequence[Search],
     refine: RefinementSettings,
     matcher: Matcher,
-    each: ParallelMap,
+    pool: ParallelMap,
     span: Span | None = None,
 ) -> list[list[Search]]:
     """Return the searches at values of a inserted between each two neighbours of the grid, ascending.
 
     refine : how closely changes are located
-    each, span : from `running.processes.parallel_map`, and see `ParallelMap`
+    pool, span : from `running.processes.parallel_map`, and see `ParallelMap`
 
     No value is inserted if nothing changes. At an inserted value only those attractors are followed that change between
     its neighbours, in kind, symmetry or period, or that have no counterpart. No value is inserted next to one without
     attractors, as a = 0: perturbations of sliding grow at a rate ∝ a, so that no motion would settle in time.
     """
-    found: list[list[Search]] = [[] for _ in searches[1:]]
-    differ = each("neighbours compared", partial(_compare, matcher=matcher), searches[:-1], searches[1:])
+    middles: list[list[Search]] = [[] for _ in searches[1:]]
+    differ = pool("neighbours compared", partial(_compare, matcher=matcher), searches[:-1], searches[1:])
     gaps = [(k, _gap(*pair, *differ[k])) for k, pair in enumerate(pairwise(searches))]
 
     def halves(k: int, gap: Gap, halved: tuple[Search, Differing, Differing]) -> list[tuple[int, Gap]]:
         middle, low, high = halved
-        found[k].append(middle)
-        here = middle.attractors
-        lower = _select(gap.before, low[0]), _select(here, low[1])
-        upper = _select(here, high[0]), _select(gap.after, high[1])
+        middles[k].append(middle)
+        attractors = middle.attractors
+        lower = _select(gap.before, low[0]), _select(attractors, low[1])
+        upper = _select(attractors, high[0]), _select(gap.after, high[1])
         both = (
             replace(gap, last=middle.model, before=lower[0], after=lower[1]),
             replace(gap, first=middle.model, before=upper[0], after=upper[1]),
         )
         return [(k, half) for half in both if half.is_open(refine)]
 
-    each.work_through(
+    pool.work_through(
         "values inserted",
         partial(_bisect, matcher=matcher),
-        [one for one in gaps if one[1].is_open(refine)],
+        [pair for pair in gaps if pair[1].is_open(refine)],
         halves,
         span,
     )
-    return [sorted(inner, key=lambda search: search.model.a) for inner in found]
+    return [sorted(inner, key=lambda search: search.model.a) for inner in middles]
 
 
 def _compare(left: Search, right: Search, matcher: Matcher) -> Differing:
@@ -115,15 +115,17 @@ def _bisect(gap: Gap, matcher: Matcher) -> tuple[Search, Differing, Differing]:
     """Follow attractors at the middle of a gap; return the search there, and what differs below and above it."""
     middle = replace(gap.search, model=gap.first.at(0.5 * (gap.first.a + gap.last.a)), attractors=[])
     middle.labels(middle.seeds([*gap.before, *gap.after]), check=False)
-    known, before, after = (
+    sources, before, after = (
         {k: Outline(item) for k, item in enumerate(attractors)}
         for attractors in ([*gap.unchanged, *gap.before], gap.before, gap.after)
     )
     # A seed may have left for an attractor that does not change.
-    here = outlines(middle.attractors)
-    origin = matcher.match(known, here)
-    here = {k: item for k, item in here.items() if origin.get(k, len(gap.unchanged)) >= len(gap.unchanged)}
-    return middle, _differing(before, here, matcher), _differing(here, after, matcher)
+    middle_outlines = outlines(middle.attractors)
+    origin = matcher.match(sources, middle_outlines)
+    middle_outlines = {
+        k: item for k, item in middle_outlines.items() if origin.get(k, len(gap.unchanged)) >= len(gap.unchanged)
+    }
+    return middle, _differing(before, middle_outlines, matcher), _differing(middle_outlines, after, matcher)
 
 
 def _differing(before: Mapping[int, Outline], after: Mapping[int, Outline], matcher: Matcher) -> Differing:

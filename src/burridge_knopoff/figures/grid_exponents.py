@@ -7,7 +7,7 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.over_parameters import draw_panels
+from burridge_knopoff.figures.parameter_panels import draw_panels
 from burridge_knopoff.figures.style import say, styled
 
 TITLE = "Largest Lyapunov exponent over the parameters"

@@ -9,8 +9,8 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from burridge_knopoff.figures.over_parameters import draw_panels
 from burridge_knopoff.figures.palette import KINDS
+from burridge_knopoff.figures.parameter_panels import draw_panels
 from burridge_knopoff.figures.style import draw_strips, legend_below, styled
 from burridge_knopoff.motion.kind import MotionKind
 

@@ -114,11 +114,9 @@ def _draw_multipliers(panel: Axes, orbits: xarray.Dataset, hue: str) -> None:
     panel.plot(*critical_point(orbits), "o", color=hue, markersize=3.5)
 
 
-def critical_point(orbits: xarray.Dataset) -> tuple[float, float]:
+def critical_point(ds: xarray.Dataset) -> tuple[float, float]:
     """Return a_c of one law and the transverse multiplier there, 1 or −1."""
-    return orbits["critical_a"].item(), -1.0 if orbits[
-        "bifurcation_kind"
-    ].item() == BifurcationKind.PERIOD_DOUBLING else 1.0
+    return ds["critical_a"].item(), -1.0 if ds["bifurcation_kind"].item() == BifurcationKind.PERIOD_DOUBLING else 1.0
 
 
 def transverse_curve(orbits: xarray.Dataset) -> tuple[np.ndarray, np.ndarray]:

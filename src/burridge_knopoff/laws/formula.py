@@ -107,8 +107,8 @@ class _Reader:
             return self._power(argument, number(0.5))
         if name == "log" and argument.is_number:
             _require_positive(argument.shift)
-        found: Term = getattr(self.builder, name)(argument)
-        return found
+        term: Term = getattr(self.builder, name)(argument)
+        return term
 
 
 def _require_real(value: float | complex) -> float:

@@ -72,12 +72,12 @@ class Law(Unchanging):
         for key in ("formula", "text"):
             if key not in vars(self) and not hasattr(type(self), key):
                 raise ValueError(f"{self.name}.{key}: missing, expected a text")
-        known = formula_names(self.formula)
+        names = formula_names(self.formula)
         for key in parameters:
             if key in ("a", "u"):
                 place = full_key(self.name, key)
                 raise ValueError(f"{place}: got a reserved name, expected another name for the parameter")
-            if key not in known:
+            if key not in names:
                 raise ValueError(f"{full_key(self.name, key)}: not in the formula {format_value(self.formula)}")
         for key, value in {"a": a, **parameters}.items():
             if not abs(real_number(value)) < 1e300:

@@ -186,17 +186,17 @@ class Tape:
         for item in self.operations:
             p, q = registers[item.first], registers[item.second]
             if item.code == LINEAR:
-                found = item.alpha * p + item.gamma
-                found = found + item.beta * q if item.second >= 0 else found
+                value = item.alpha * p + item.gamma
+                value = value + item.beta * q if item.second >= 0 else value
             elif item.code == MULTIPLY:
-                found = p * q
+                value = p * q
             elif item.code == RECIPROCAL:
-                found = 1.0 / p
+                value = 1.0 / p
             elif item.code == POWER:
-                found = p**item.alpha
+                value = p**item.alpha
             else:
-                found = (functions.exp if item.code == EXP else functions.log)(p)
-            registers.append(found)
+                value = (functions.exp if item.code == EXP else functions.log)(p)
+            registers.append(value)
         return registers[self.value], registers[self.slope]
 
     def is_analytic(self, low: float, high: float, depth: int = 0) -> bool:
@@ -226,8 +226,8 @@ class Tape:
 
 
 def _linear_ends(item: Operation, p: Sequence[float], q: Sequence[float]) -> list[float]:
-    others = [item.beta * y for y in q] if item.second >= 0 else [0.0]
-    return [item.alpha * x + y + item.gamma for x in p for y in others]
+    terms = [item.beta * y for y in q] if item.second >= 0 else [0.0]
+    return [item.alpha * x + y + item.gamma for x in p for y in terms]
 
 
 def _product_ends(item: Operation, p: Sequence[float], q: Sequence[float]) -> list[float]:

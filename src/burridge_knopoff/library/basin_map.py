@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Unpack
 
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.basins.settings import BasinSettings
-from burridge_knopoff.library.by_name import SearchOptions, settings_of, show_settings
 from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state
+from burridge_knopoff.library.keyword_settings import SearchOptions, settings_of, show_settings
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.sampling import POSITIONS

@@ -10,8 +10,8 @@ import numpy as np
 from burridge_knopoff.attractors import search as attractors
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.settings import SearchSettings
-from burridge_knopoff.library.by_name import AttractorOptions, settings_of, show_settings
 from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state
+from burridge_knopoff.library.keyword_settings import AttractorOptions, settings_of, show_settings
 from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import STARTS, Model

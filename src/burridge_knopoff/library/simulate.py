@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Unpack
 
 from burridge_knopoff.laws import Law
-from burridge_knopoff.library.by_name import RunSettings, settings_of, show_settings
 from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state, warn_of_cost
+from burridge_knopoff.library.keyword_settings import RunSettings, settings_of, show_settings
 from burridge_knopoff.library.run import Run
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import ChainState, Model

@@ -14,8 +14,8 @@ import numpy as np
 from burridge_knopoff.dataset.point import POINT_VARIABLES, point_attributes, point_values
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.laws import Law
-from burridge_knopoff.library.by_name import settings_of, show_settings
 from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state, warn_of_cost
+from burridge_knopoff.library.keyword_settings import settings_of, show_settings
 from burridge_knopoff.messages import format_value, full_key, refusal
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of

@@ -154,24 +154,24 @@ class Chain(Unchanging):
             self.check_springs()
 
     def _check_network(self) -> None:
-        given = "chain.grid" if self.grid else "chain.springs"
+        option = "chain.grid" if self.grid else "chain.springs"
         if self.ends != "open":
-            raise ValueError(f"chain.ends: got {self.ends}, expected open together with {given}")
+            raise ValueError(f"chain.ends: got {self.ends}, expected open together with {option}")
         for key in ("coupling", "damping"):
             value, usual = getattr(self, key), 1.0 if key == "coupling" else 0.0
             if isinstance(value, tuple):
                 got = f"{len(value)} numbers" if len(value) != 1 else "a list of 1 number"
-                raise ValueError(f"chain.{key}: got {got}, expected one together with {given}")
+                raise ValueError(f"chain.{key}: got {got}, expected one together with {option}")
             if self.springs and value != usual:
-                raise ValueError(f"chain.{key}: got {value!r}, expected none together with {given}")
+                raise ValueError(f"chain.{key}: got {value!r}, expected none together with {option}")
         if self.grid:
             count = math.prod(self.grid)
             if self.blocks not in (None, count):
                 raise ValueError(f"chain.blocks: got {self.blocks}, expected {count} for chain.grid {list(self.grid)}")
             object.__setattr__(self, "blocks", count)
         elif self.blocks is None:
-            one, other, *_ = read_edges(str(self.springs))
-            object.__setattr__(self, "blocks", int(max(one.max(), other.max())) + 1)
+            first, second, *_ = read_edges(str(self.springs))
+            object.__setattr__(self, "blocks", int(max(first.max(), second.max())) + 1)
 
     def check_springs(self) -> None:
         """Read the file of springs, if there is one.
@@ -273,11 +273,11 @@ class Chain(Unchanging):
             return grid_neighbours(columns, rows, float(self.coupling), float(self.damping))  # type: ignore[arg-type]
         if self.springs is None:
             return row_neighbours(self.coupling_to_previous, self._shift_to_next(self.damping))
-        one, other, strength, damping = read_edges(self.springs)
-        largest = int(max(one.max(), other.max())) + 1
+        first, second, strength, damping = read_edges(self.springs)
+        largest = int(max(first.max(), second.max())) + 1
         if largest > self.blocks:
             raise ValueError(f"chain.springs: got block {largest}, expected at most chain.blocks ({self.blocks})")
-        return network_neighbours(one, other, strength, damping, self.blocks)
+        return network_neighbours(first, second, strength, damping, self.blocks)
 
     @cached_property
     def driving(self) -> np.ndarray:

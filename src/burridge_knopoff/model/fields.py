@@ -47,11 +47,11 @@ class Keys(Range):
                 raise unknown_key_error(key, name, sorted(self.fields))
         values = {}
         for name, field in self.fields.items():
-            given = value.get(name, field.default)
-            if given is REQUIRED:
+            entry = value.get(name, field.default)
+            if entry is REQUIRED:
                 raise ValueError(f"{full_key(key, name)}: missing, expected {field.description}")
-            if given is not FOLLOWS:
-                values[name] = field.range.form(given, full_key(key, name))
+            if entry is not FOLLOWS:
+                values[name] = field.range.form(entry, full_key(key, name))
         return values
 
     def __str__(self) -> str:
@@ -76,14 +76,14 @@ def fields_of(kind: type) -> Mapping[str, Field]:
     # A subclass that is no dataclass itself has the fields of its base.
     kind = next((base for base in kind.__mro__ if "__dataclass_fields__" in vars(base)), kind)
     if kind not in _FIELDS:
-        hints, found = get_type_hints(kind, include_extras=True), {}
+        hints, fields = get_type_hints(kind, include_extras=True), {}
         for item in dataclasses.fields(kind):
             if get_origin(hints[item.name]) is Annotated:
                 _, allowed, description = get_args(hints[item.name])
                 default = REQUIRED if item.default is dataclasses.MISSING else item.default
                 default = FOLLOWS if default is None else default
-                found[item.name] = Field(allowed, description, default)
-        _FIELDS[kind] = found
+                fields[item.name] = Field(allowed, description, default)
+        _FIELDS[kind] = fields
     return _FIELDS[kind]
 
 

@@ -70,8 +70,8 @@ class InitialState:
         blocks = Whole(1, MAXIMUM_BLOCKS).form(blocks, "blocks")
         for values, words in ((self.position, "positions"), (self.velocity, "velocities")):
             if isinstance(values, tuple) and len(values) != blocks:
-                given = f"the number of {words} of the initial state {self.name!r}"
-                raise ValueError(f"blocks: got {blocks}, expected {len(values)}, {given}")
+                reason = f"the number of {words} of the initial state {self.name!r}"
+                raise ValueError(f"blocks: got {blocks}, expected {len(values)}, {reason}")
         return block_values(self.position, blocks, "position"), block_values(self.velocity, blocks, "velocity")
 
 

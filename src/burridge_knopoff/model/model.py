@@ -193,10 +193,10 @@ class Model(Unchanging):
         for _ in range(self.blocks):
             speed = np.where(stuck, 0.0, velocity)
             at_rest = force + chain.damping_force(speed, v) + chain.damping_diagonal * speed
-            more = stuck | (at_rest <= chain.thresholds)
-            if np.array_equal(more, stuck):
+            grown = stuck | (at_rest <= chain.thresholds)
+            if np.array_equal(grown, stuck):
                 break
-            stuck = more
+            stuck = grown
         return stuck
 
 

@@ -47,8 +47,8 @@ def parse_indexed_name(name: Any) -> tuple[str, int] | None:
 
     Returns None for any other name.
     """
-    found = _INDEXED_NAME.fullmatch(name) if isinstance(name, str) else None
-    return (found[1], int(found[2])) if found else None
+    match = _INDEXED_NAME.fullmatch(name) if isinstance(name, str) else None
+    return (match[1], int(match[2])) if match else None
 
 
 def plain_name(name: str) -> str:
@@ -67,10 +67,10 @@ def parameter_value(model: Model, name: str) -> float:
 
     Raises ValueError, one line, if the model has no parameter of this name, or several values for it.
     """
-    given = _stored_value(model, name)
-    number = real_number(given)
+    value = _stored_value(model, name)
+    number = real_number(value)
     if number != number:
-        raise refusal(name, given, ONE)
+        raise refusal(name, value, ONE)
     return number
 
 
@@ -100,20 +100,20 @@ def set_parameters(model: Model, parameters: Mapping[str, float]) -> Model:
     """
     changes: dict[str, dict[str, Any]] = {"law": {}, "chain": {}, "single": {}, "driver": {}}
     for name, value in parameters.items():
-        given = _stored_value(model, name)
-        if not isinstance(given, float) and given != NEIGHBOURS:
-            raise refusal(name, given, ONE)
+        stored = _stored_value(model, name)
+        if not isinstance(stored, float) and stored != NEIGHBOURS:
+            raise refusal(name, stored, ONE)
         if real_number(value) != real_number(value):
             raise refusal(name, value, "a number")
         single = parse_indexed_name(name)
         part = "single" if single else "driver" if name == "v" else "chain" if name in CHAIN_PARAMETERS else "law"
         changes[part][name] = CHAIN_PARAMETERS[single[0]].form(value, name) if single else value
-    own: dict[str, Any] = {**changes["driver"]}
+    arguments: dict[str, Any] = {**changes["driver"]}
     if changes["law"]:
-        own["law"] = model.law.at(changes["law"].pop("a", None), **changes["law"])
+        arguments["law"] = model.law.at(changes["law"].pop("a", None), **changes["law"])
     if changes["chain"] or changes["single"]:
-        own["chain"] = _set_indexed_parameters(replace(model.chain, **changes["chain"]), changes["single"])
-    return replace(model, **own)
+        arguments["chain"] = _set_indexed_parameters(replace(model.chain, **changes["chain"]), changes["single"])
+    return replace(model, **arguments)
 
 
 def remarks_on_states(states: Iterable[InitialState], varied: Iterable[str]) -> list[str]:
@@ -127,9 +127,9 @@ def remarks_on_states(states: Iterable[InitialState], varied: Iterable[str]) -> 
         ignored = tuple(name for name in scales if name != "v" or not isinstance(state, PaperState))
         names.setdefault(ignored, []).append(state.name)
     return [
-        f"initial: {', '.join(those)}: {'in proportion to v, but ' * (set(ignored) < set(scales))}the same numbers at "
+        f"initial: {', '.join(group)}: {'in proportion to v, but ' * (set(ignored) < set(scales))}the same numbers at "
         f"every {' and '.join(ignored)}"
-        for ignored, those in names.items()
+        for ignored, group in names.items()
         if ignored
     ]
 

@@ -23,12 +23,12 @@ SEED = Whole(0, 2**32 - 1)
 class RandomNumbers(Range):
     """The keys of independent random numbers for the blocks, uniform between `low` and `high`.
 
-    each : range of `low` and `high`
+    number : range of `low` and `high`
 
     The form is a text for files and command lines, such as `random=uniform,low=0.9,high=1.1,seed=1`.
     """
 
-    each: Number
+    number: Number
 
     @property
     def keys(self) -> Keys:
@@ -36,8 +36,8 @@ class RandomNumbers(Range):
         return Keys(
             {
                 "random": Field(OneOf(("uniform",)), "the distribution, uniform"),
-                "low": Field(self.each, "the smallest number"),
-                "high": Field(self.each, "the largest number"),
+                "low": Field(self.number, "the smallest number"),
+                "high": Field(self.number, "the largest number"),
                 "seed": Field(SEED, "a seed; the same seed draws the same numbers"),
             }
         )
@@ -61,15 +61,15 @@ def _parse(text: str) -> dict[str, Any]:
     return {name: value if (number := number_in(value)) is None else number for name, _, value in parts}
 
 
-def block_values(given: Numbers, blocks: int, name: str) -> np.ndarray:
+def block_values(numbers: Numbers, blocks: int, name: str) -> np.ndarray:
     """Return the numbers of all blocks, shape (blocks,).
 
     name : of the quantity; different quantities with the same seed are independent
 
     The sequence does not depend on the number of blocks.
     """
-    if not isinstance(given, str):
-        return np.array(np.broadcast_to(given, blocks), dtype=float)  # type: ignore[arg-type]
-    drawn = _parse(given)
+    if not isinstance(numbers, str):
+        return np.array(np.broadcast_to(numbers, blocks), dtype=float)  # type: ignore[arg-type]
+    drawn = _parse(numbers)
     unit = np.random.default_rng([drawn["seed"], *name.encode()]).random(blocks)
     return np.minimum(drawn["low"] + (drawn["high"] - drawn["low"]) * unit, drawn["high"])

@@ -134,7 +134,7 @@ class Text(Range):
 class Several(Range):
     """A list of `least` to `most` values; `distinct`: no value may occur twice."""
 
-    each: Range
+    element: Range
     least: int = 0
     most: int = 10**9
     distinct: bool = False
@@ -142,7 +142,7 @@ class Several(Range):
     def _fit(self, value: Any, key: str) -> tuple[Any, ...] | None:
         if not isinstance(value, list | tuple | np.ndarray) or getattr(value, "ndim", 1) == 0:
             return None
-        items = tuple(self.each.form(item, f"{key}[{i}]") for i, item in enumerate(value))
+        items = tuple(self.element.form(item, f"{key}[{i}]") for i, item in enumerate(value))
         fits = self.least <= len(items) <= self.most and not (self.distinct and len(set(items)) < len(items))
         return items if fits else None
 
@@ -151,7 +151,7 @@ class Several(Range):
         limits += [f"at most {self.most}"] if self.least < self.most < 10**9 else []
         limits += [f"of {self.most}"] if self.least == self.most else []
         limits += ["each value once"] if self.distinct else []
-        return f"a list ({'; '.join([*limits, f'each {self.each}'])})"
+        return f"a list ({'; '.join([*limits, f'each {self.element}'])})"
 
 
 @dataclass(eq=False, repr=False)
@@ -176,17 +176,17 @@ class Named(Range):
     """A mapping from names to values, with at least `least` entries."""
 
     name: Range
-    each: Range
+    element: Range
     least: int = 0
 
     def _fit(self, value: Any, key: str) -> dict[str, Any] | None:
         if not isinstance(value, Mapping) or len(value) < self.least:
             return None
-        return {self.name.form(name, key): self.each.form(item, full_key(key, name)) for name, item in value.items()}
+        return {self.name.form(name, key): self.element.form(item, full_key(key, name)) for name, item in value.items()}
 
     def __str__(self) -> str:
         limits = [f"at least {self.least}"] if self.least else []
-        return f"named entries ({'; '.join([*limits, f'each {self.each}'])})"
+        return f"named entries ({'; '.join([*limits, f'each {self.element}'])})"
 
 
 @dataclass(eq=False, repr=False)

@@ -25,15 +25,15 @@ def static_displacement(chain: Chain) -> np.ndarray:
     if chain.is_network or chain.blocks > ELIMINATION_LIMIT:
         return nearest_solution(chain.sparse_stiffness, chain.thresholds)
     solve = solve_ring if chain.ends == "ring" else solve_tridiagonal
-    found = solve(chain.diagonal, chain.coupling_to_next, chain.thresholds.copy())
+    x = solve(chain.diagonal, chain.coupling_to_next, chain.thresholds.copy())
     if chain.ends == "ring":
         # The solution is made periodic to the bit, as the ring is, so that a periodic state stays periodic.
         period = _period(chain)
-        found = np.tile(found[:period], chain.blocks // period)
+        x = np.tile(x[:period], chain.blocks // period)
     if chain.is_mirror_symmetric:
         # The solution is made mirror-symmetric to the bit, as the chain is.
-        found = 0.5 * (found + found[::-1])
-    return found
+        x = 0.5 * (x + x[::-1])
+    return x
 
 
 def _period(ring: Chain) -> int:

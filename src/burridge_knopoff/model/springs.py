@@ -74,10 +74,13 @@ def grid_neighbours(columns: int, rows: int, strength: float, damping: float) ->
 
 
 def network_neighbours(
-    one: np.ndarray, other: np.ndarray, strength: np.ndarray, damping: np.ndarray, blocks: int
+    first: np.ndarray, second: np.ndarray, strength: np.ndarray, damping: np.ndarray, blocks: int
 ) -> Neighbours:
-    """Return the neighbours in a network, in ascending order; one, other : the blocks (0 …) that each spring joins."""
-    block, index = np.concatenate([one, other]), np.concatenate([other, one])
+    """Return the neighbours in a network, in ascending order.
+
+    first, second : the blocks (0 …) that each spring joins
+    """
+    block, index = np.concatenate([first, second]), np.concatenate([second, first])
     order = np.lexsort((index, block))
     start = np.concatenate([[0], np.cumsum(np.bincount(block, minlength=blocks))])
     numbers = (np.concatenate([values, values])[order] for values in (strength, damping))
@@ -143,8 +146,8 @@ def read_edges(springs: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nda
         if wrong.any():
             row = table[np.flatnonzero(wrong)[0]]
             raise _file_error(path, f"{' '.join(f'{value:g}' for value in row)}{reason}")
-    one, other = blocks.T.astype(np.int64) - 1
-    return read_only_copy(one), read_only_copy(other), read_only_copy(strength), read_only_copy(damping)
+    first, second = blocks.T.astype(np.int64) - 1
+    return read_only_copy(first), read_only_copy(second), read_only_copy(strength), read_only_copy(damping)
 
 
 def _content(path: str) -> bytes:
@@ -158,5 +161,5 @@ def _digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()[:16]
 
 
-def _file_error(path: str, given: str) -> ValueError:
-    return ValueError(f"chain.springs: {path}: got {given}, expected {_LINES}")
+def _file_error(path: str, content: str) -> ValueError:
+    return ValueError(f"chain.springs: {path}: got {content}, expected {_LINES}")

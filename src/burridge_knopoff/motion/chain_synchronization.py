@@ -157,12 +157,12 @@ def transverse_exponent(
     blocks, unit = model.blocks, model.chain.own_units.time
     alignment = ALIGNMENT * unit if alignment is None else DURATION.form(alignment, "alignment")
     window = WATCH.quarter * unit if window is None else window_range(model.chain).form(window, "window")
-    own = model.chain.own_units.state(blocks)[:, None]
+    scale = model.chain.own_units.state(blocks)[:, None]
     check_state(model, state)
     index = np.arange(2 * blocks)
     # A direction without special symmetry, except antisymmetry.
     perturbation = _antisymmetric(np.cos(1.0 + 2.3 * index)[:, None])
-    runner = Runner(model, perturbations=perturbation * own)
+    runner = Runner(model, perturbations=perturbation * scale)
     renewal = RENEWAL * unit
     before, steps = math.ceil(alignment / renewal), BATCHES * math.ceil(window / BATCHES / renewal)
     growth = np.zeros(steps)
@@ -173,13 +173,13 @@ def transverse_exponent(
         if length == 0.0:
             return -math.inf, math.nan
         perturbation /= length
-        runner.carry(perturbation * own)
+        runner.carry(perturbation * scale)
         after = runner.state_after(state, alignment / before if step < 0 else window / steps)
         if after is None:
             return math.nan, math.nan
         # Rounding errors grow if the symmetric motion is unstable; they are removed before they matter.
         state = symmetrized(after)
-        perturbation = _antisymmetric(runner.perturbations / own)
+        perturbation = _antisymmetric(runner.perturbations / scale)
         if step >= 0:
             growth[step] = 0.5 * math.log(max(math.fsum(perturbation[:, 0] ** 2), 1e-300))
     rate = growth.reshape(BATCHES, -1).sum(axis=1) / (window / BATCHES)
@@ -209,9 +209,9 @@ def watch_chain(
         **{f"symmetric_{name}": np.full((*shape, sample.symmetric_samples), np.nan) for name in ("exponent", "error")},
         **{f"lyapunov_{name}": np.full(shape, np.nan) for name in ("exponent", "error")},
     }
-    for i, of_law in enumerate(models):
+    for i, law_model in enumerate(models):
         for j, a in enumerate(grid):
-            model, initial = of_law.at(a), sample.initial_states(of_law.blocks, a)
+            model, initial = law_model.at(a), sample.initial_states(law_model.blocks, a)
             runner = Runner(model)
             for k, state in enumerate(initial):
                 fate = watch_state(runner, model.begin(state, sample.start), watch)
@@ -230,8 +230,8 @@ def watch_chain(
 def _lyapunov_exponent(model: Model, initial: InitialState, start: str, watch: Watch) -> tuple[float, float]:
     half = 0.5 * watch.time_limit
     options: dict[str, Any] = {"transient": half, "window": half, "batches": BATCHES, "events": "none"}
-    kept: dict[str, Any] = {"sampling": half, "trajectory": 0.0}
-    settings = Settings(start=start, lyapunov_exponents=1, **options, **kept)
+    output: dict[str, Any] = {"sampling": half, "trajectory": 0.0}
+    settings = Settings(start=start, lyapunov_exponents=1, **options, **output)
     trajectory = run(model, initial, settings, section_only=True)
     return float(trajectory.lyapunov_exponent[0]), float(trajectory.lyapunov_error[0])
 

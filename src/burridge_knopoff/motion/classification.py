@@ -64,9 +64,9 @@ class Classifier:
         if usual is None or not usual.can_be_periodic:
             return usual
         for test in (self._classify_as_locked, self._classify_as_long_orbit, self._classify_by_growth):
-            found = test(usual, start)
-            if found is not None:
-                return found
+            motion = test(usual, start)
+            if motion is not None:
+                return motion
         return self._classify_by_exponents(usual, start)
 
     @property
@@ -98,20 +98,20 @@ class Classifier:
         if not self.growth_window or self._known_distance(usual) is None:
             return None
         window = self.growth_window * self.window
-        seen = observe(
+        longer = observe(
             self.model, start, self.transient, window, self._scaled_settings, usual.mean_distance, exponents=2
         )
-        if seen is None or not seen.can_be_periodic:
+        if longer is None or not longer.can_be_periodic:
             return None
-        growth = seen.exponent[0] * window
-        exponent = np.concatenate([seen.exponent, usual.exponent[2:]])
+        growth = longer.exponent[0] * window
+        exponent = np.concatenate([longer.exponent, usual.exponent[2:]])
         if growth >= self.chaotic_growth:
             return replace(usual, kind=self._chaos_kind(usual), exponent=exponent)
         if growth > self.regular_growth * np.log1p(window / self.transient):
             return None
-        if self._has_drifted(usual, seen):
-            return replace(usual, left_for=seen.state())
-        return replace(usual, kind=MotionKind.QUASIPERIODIC, period=seen.period, exponent=exponent)
+        if self._has_drifted(usual, longer):
+            return replace(usual, left_for=longer.state())
+        return replace(usual, kind=MotionKind.QUASIPERIODIC, period=longer.period, exponent=exponent)
 
     def _classify_by_exponents(self, usual: SteadyMotion, start: ChainState) -> SteadyMotion:
         """Decide the motion by its exponents in the longer window and, if necessary, in the longest.
@@ -122,41 +122,41 @@ class Classifier:
         window = self.longer_window * self.window
         scaled = self._scaled_settings.scaled_by(self.longer_window**-0.5)
         longer = self._observe(start, window, scaled, self._known_distance(usual))
-        found, last = usual, usual.state()
+        motion, last = usual, usual.state()
         if longer is not None:
             last = longer.state()
             if longer.kind not in CHAOS and self._has_drifted(usual, longer):
                 return replace(usual, left_for=last)
             # The returns remain those of the usual window, since their number affects how attractors are distinguished.
             changed = {name: getattr(longer, name) for name in ("kind", "section_period", "period", "exponent")}
-            found = replace(usual, **changed)
-            orbit = locked_orbit(self.model, longer.returns, longer.recurrence) if found.can_be_periodic else None
+            motion = replace(usual, **changed)
+            orbit = locked_orbit(self.model, longer.returns, longer.recurrence) if motion.can_be_periodic else None
             if orbit is not None:
-                return self._mark_if_left(self._motion_on_orbit(found, orbit), usual, orbit.reference)
-        if not found.can_be_periodic or math.isinf(found.period):
-            return self._mark_if_left(found, usual, last)
-        if found.exponent[0] * window <= self.regular_growth * np.log1p(window / self.transient):
-            return found
-        return self._classify_in_longest_window(found, last)
+                return self._mark_if_left(self._motion_on_orbit(motion, orbit), usual, orbit.reference)
+        if not motion.can_be_periodic or math.isinf(motion.period):
+            return self._mark_if_left(motion, usual, last)
+        if motion.exponent[0] * window <= self.regular_growth * np.log1p(window / self.transient):
+            return motion
+        return self._classify_in_longest_window(motion, last)
 
-    def _classify_in_longest_window(self, found: SteadyMotion, start: ChainState) -> SteadyMotion:
+    def _classify_in_longest_window(self, motion: SteadyMotion, start: ChainState) -> SteadyMotion:
         """Return the motion with its exponents in the longest window; chaos if the largest one exceeds its error."""
         settings = self._scaled_settings
         options = replace(run_options(self.transient, self.longest_window * self.window, settings), events="none")
         trajectory = run(self.model, start, options, section_only=True)
         if trajectory.status != "completed":
-            return found
+            return motion
         exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
         # No threshold is needed: the errors include linear growth.
         chaotic = exponent[0] > settings.standard_errors * error[0]
-        return replace(found, kind=self._chaos_kind(found) if chaotic else found.kind, exponent=exponent)
+        return replace(motion, kind=self._chaos_kind(motion) if chaotic else motion.kind, exponent=exponent)
 
-    def _mark_if_left(self, found: SteadyMotion, usual: SteadyMotion, last: ChainState) -> SteadyMotion:
+    def _mark_if_left(self, motion: SteadyMotion, usual: SteadyMotion, last: ChainState) -> SteadyMotion:
         """Return the motion, marked as a transient if ⟨J⟩ after its last state differs."""
-        if found.kind in CHAOS:
-            return found
+        if motion.kind in CHAOS:
+            return motion
         later = self._observe(last, self.window)
-        return replace(usual, left_for=last) if later is not None and self._has_other_mean(found, later) else found
+        return replace(usual, left_for=last) if later is not None and self._has_other_mean(motion, later) else motion
 
     def _known_distance(self, usual: SteadyMotion) -> float | None:
         """Return ⟨J⟩ if it is certain to exceed the threshold of synchrony in the longer window too, otherwise None."""

@@ -24,7 +24,7 @@ def event_jumps(
     that slips backward at once, under symmetric contact.
     """
     chain = model.chain
-    event, own = np.arange(len(block)), block - 1
+    event, index = np.arange(len(block)), block - 1
     force = chain.force(position) + chain.damping_force(velocity, model.v)
     friction = chain.thresholds * model.law(np.abs(velocity))
     acceleration = np.where(velocity == 0.0, 0.0, (force - np.sign(velocity) * friction) / chain.masses)
@@ -32,9 +32,9 @@ def event_jumps(
     # A block slips in one direction from its start, where the force has this direction, to its stop.
     towards = np.sign(np.where(velocity != 0.0, velocity, force))
     # Rounding aside, the force is at its threshold where a block starts, and below it where a block sticks.
-    turns = np.abs(force[event, own]) > (1.0 + ROUNDING) * chain.thresholds[own]
+    turns = np.abs(force[event, index]) > (1.0 + ROUNDING) * chain.thresholds[index]
     turns &= model.contact == "symmetric"
     stops, starts = event[is_stop & ~turns & (event > 0)], event[~is_stop & ~turns]
-    direction = towards[stops - 1, own[stops]]
-    threshold, mass = chain.thresholds[own[stops]], chain.masses[own[stops]]
-    return np.abs(force[stops, own[stops]] - direction * threshold) / mass, np.abs(growth[starts, own[starts]])
+    direction = towards[stops - 1, index[stops]]
+    threshold, mass = chain.thresholds[index[stops]], chain.masses[index[stops]]
+    return np.abs(force[stops, index[stops]] - direction * threshold) / mass, np.abs(growth[starts, index[starts]])

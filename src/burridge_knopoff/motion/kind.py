@@ -196,19 +196,19 @@ def _kind_by_exponents(
     mean_distance: float, exponent: np.ndarray, error: np.ndarray, settings: MotionSettings
 ) -> MotionKind | None:
     """Return the kind of motion that is not chaotic and has not repeated; None if it attracts as periodic orbits do."""
-    known = np.flatnonzero(~np.isnan(exponent))
+    finite = np.flatnonzero(~np.isnan(exponent))
     zero = is_zero_exponent(exponent, error, settings)
     # An exponent above its threshold may be 0 within its error, but then the error allows weak chaos as well.
-    if len(known) and (not zero[0] or exponent[0] > settings.zero_exponent):
+    if len(finite) and (not zero[0] or exponent[0] > settings.zero_exponent):
         return MotionKind.UNDETERMINED
     # Errors above the threshold of chaos leave the kind undetermined: chaos may have ended within the window.
-    if len(known) and settings.standard_errors * np.nanmax(error[:2]) > LARGEST_ERROR * settings.chaotic_exponent:
+    if len(finite) and settings.standard_errors * np.nanmax(error[:2]) > LARGEST_ERROR * settings.chaotic_exponent:
         return MotionKind.UNDETERMINED
-    if len(known) > 1 and not zero[1]:
+    if len(finite) > 1 and not zero[1]:
         return None
-    if len(known) > 1 and mean_distance < settings.synchronization_threshold and exponent[1] < -error[1]:
+    if len(finite) > 1 and mean_distance < settings.synchronization_threshold and exponent[1] < -error[1]:
         return MotionKind.UNDETERMINED
-    return MotionKind.QUASIPERIODIC if len(known) > 1 else MotionKind.UNDETERMINED
+    return MotionKind.QUASIPERIODIC if len(finite) > 1 else MotionKind.UNDETERMINED
 
 
 def _is_positive(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> bool:

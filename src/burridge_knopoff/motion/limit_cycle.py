@@ -67,10 +67,10 @@ def orbit_of_motion(model: Model, state: ChainState, settling: float, window: fl
     if runner.run(settling + window) != Status.COMPLETED:
         raise OrbitError(f"a = {model.a!r}: the run ends at τ = {runner.clock!r}, before {settling + window!r}")
     times, values = runner.log.events.times(), runner.log.events.values()
-    found = orbit_of_events(model, times, values, _is_on_orbit)
-    if found is None:
+    orbit = orbit_of_events(model, times, values, _is_on_orbit)
+    if orbit is None:
         raise OrbitError(f"a = {model.a:.12g}: no periodic orbit found within {window:g}")
-    return found
+    return orbit
 
 
 def orbit_of_events(
@@ -86,11 +86,11 @@ def orbit_of_events(
     """
     for start, time, symmetry, size in _close_returns(model, times, values):
         try:
-            found = find_periodic_orbit(model, start, time, symmetry)
+            orbit = find_periodic_orbit(model, start, time, symmetry)
         except OrbitError:
             continue
-        if accepted(found, *_cycle_distances(found, values), size):
-            return minimal_form(found, CLOSENESS[0])
+        if accepted(orbit, *_cycle_distances(orbit, values), size):
+            return minimal_form(orbit, CLOSENESS[0])
     return None
 
 
@@ -104,15 +104,15 @@ def _close_returns(
     scale = model.state_scale
     block = int(values[stops, 0].min())
     other = model.blocks + 1 - block
-    own = np.flatnonzero(stops & (values[:, 0] == block))
-    state, begun = values[own[0], 2:], times[own[0]]
-    repeated = [(times[k] - begun, Symmetry.ASYMMETRIC, values[k, 2:]) for k in own[1:]]
+    section_stops = np.flatnonzero(stops & (values[:, 0] == block))
+    state, begun = values[section_stops[0], 2:], times[section_stops[0]]
+    repeated = [(times[k] - begun, Symmetry.ASYMMETRIC, values[k, 2:]) for k in section_stops[1:]]
     if model.chain.is_mirror_symmetric:
         order = mirror_order(model.blocks)
         if np.abs((state - state[order]) / scale).max() <= CLOSENESS[0]:
             repeated = [(time, Symmetry.SYNCHRONIZED, at) for time, _, at in repeated]
         else:
-            soonest = begun + MIN_MIRROR_TIME * (times[own[1:2]] - begun).sum()
+            soonest = begun + MIN_MIRROR_TIME * (times[section_stops[1:2]] - begun).sum()
             mirrored = np.flatnonzero(stops & (values[:, 0] == other) & (times > soonest))
             repeated += [(times[k] - begun, Symmetry.SYMMETRIC, values[k, 2:][order]) for k in mirrored]
     repeated.sort(key=lambda item: item[0])
@@ -136,10 +136,13 @@ def _cycle_distances(orbit: PeriodicOrbit, values: np.ndarray) -> tuple[float, f
     """Return the distances of the first and the last cycle of a motion from an orbit, by the events of the motion."""
     block = int(np.flatnonzero(orbit.stop_counts)[0]) + 1
     around, _ = flow(orbit.model, orbit.reference, orbit.period)
-    own, seen = (
+    orbit_stops, motion_stops = (
         _states_at_stops(events, block) / orbit.model.state_scale for events in (around.log.events.values(), values)
     )
-    first, last = (distance(cycle, own, share=1.0) for cycle in (seen[: len(own)], seen[-len(own) :]))
+    first, last = (
+        distance(cycle, orbit_stops, share=1.0)
+        for cycle in (motion_stops[: len(orbit_stops)], motion_stops[-len(orbit_stops) :])
+    )
     return first, last
 
 

@@ -131,9 +131,9 @@ def observe(
     mean_distance : ⟨J⟩ if it is known; otherwise it is measured
     exponents : number of exponents to compute
     """
-    known = mean_distance is not None
+    has_mean = mean_distance is not None
     options = run_options(transient, window, settings, exponents)
-    trajectory = run(model, start, options, section_only=known, stops_only=True)
+    trajectory = run(model, start, options, section_only=has_mean, stops_only=True)
     mean_distance = trajectory.mean_distance if mean_distance is None else mean_distance
     if trajectory.status != "completed":
         return None
@@ -143,15 +143,15 @@ def observe(
         position = trajectory.event_position[chosen] - model.sliding_offset
         return np.concatenate([position, trajectory.event_velocity[chosen]], axis=1)
 
-    found = returns_of(model, window, block, states)
-    if found is None:
+    section = returns_of(model, window, block, states)
+    if section is None:
         return None
     mean = synchronization_distance(mean_distance, model.chain.is_mirror_symmetric)
     motion = motion_of_completed_run(vars(trajectory), mean, settings)
     return SteadyMotion(
-        returns=found.returns,
-        mirror_returns=found.mirror_returns,
-        spacing=found.spacing,
+        returns=section.returns,
+        mirror_returns=section.mirror_returns,
+        spacing=section.spacing,
         mean_distance=mean_distance,
         mean_distance_error=trajectory.mean_distance_error,
         stop_rate=np.bincount(block, minlength=model.blocks + 1)[1:] / window,
@@ -159,13 +159,13 @@ def observe(
         section_period=motion.section_period,
         period=motion.period,
         exponent=trajectory.lyapunov_exponent,
-        block=found.block,
-        mirror_block=found.mirror_block,
-        recurrence=recurrence(trajectory.event_time[block == found.block], found.returns),
+        block=section.block,
+        mirror_block=section.mirror_block,
+        recurrence=recurrence(trajectory.event_time[block == section.block], section.returns),
     )
 
 
-def is_on_attractor(found: Returns, attractor: SteadyMotion, resolution: float, tolerance: float) -> bool:
+def is_on_attractor(section: Returns, attractor: SteadyMotion, resolution: float, tolerance: float) -> bool:
     """Return whether a settled motion lies on an attractor, within the resolution.
 
     A periodic orbit may be embedded in a chaotic attractor, but is not part of the attractor, unless the attractor is
@@ -175,6 +175,6 @@ def is_on_attractor(found: Returns, attractor: SteadyMotion, resolution: float, 
     tolerance : distance within which the returns of periodic orbits repeat
     """
     chaotic = attractor.kind in CHAOS and attractor.spacing > tolerance
-    if found.block != attractor.block or (found.is_periodic(tolerance) and chaotic):
+    if section.block != attractor.block or (section.is_periodic(tolerance) and chaotic):
         return False
-    return is_near(found.returns, attractor.returns, max(resolution, SPACINGS * attractor.spacing))
+    return is_near(section.returns, attractor.returns, max(resolution, SPACINGS * attractor.spacing))

@@ -70,12 +70,12 @@ def repetition_of(run: Mapping[str, np.ndarray], settings: MotionSettings) -> Re
     if not len(block):
         return Repetition()
     stop_count = np.bincount(block, minlength=run["event_position"].shape[1] + 1)[1:]
-    own = np.flatnonzero(stops)[block == section_blocks(stop_count)[0]]
-    states = np.concatenate([run["event_position"][own], run["event_velocity"][own]], axis=1)
+    section_stops = np.flatnonzero(stops)[block == section_blocks(stop_count)[0]]
+    states = np.concatenate([run["event_position"][section_stops], run["event_velocity"][section_stops]], axis=1)
     length = orbit_length(states, settings.period_tolerance, len(states))
     if length == len(states):
         return Repetition()
-    time = run["event_time"][own]
+    time = run["event_time"][section_stops]
     return Repetition(0, float(time[-1] - time[-1 - length]), _divergence(states, length, settings))
 
 
@@ -159,10 +159,10 @@ def section_blocks(stops: np.ndarray) -> tuple[int, int]:
     pairs = stops + stops[::-1]
     outer = int(np.argmax(pairs >= RARE_STOPS * pairs.max()))
     inner = len(stops) - 1 - outer
-    fewer, more = sorted((outer, inner), key=lambda one: (stops[one], -one))
-    if stops[fewer] >= RARE_STOPS * stops[more]:
+    rare, frequent = sorted((outer, inner), key=lambda k: (stops[k], -k))
+    if stops[rare] >= RARE_STOPS * stops[frequent]:
         return outer + 1, outer + 1
-    return more + 1, fewer + 1
+    return frequent + 1, rare + 1
 
 
 def orbit_length(returns: np.ndarray, tolerance: float, longest: int) -> int:

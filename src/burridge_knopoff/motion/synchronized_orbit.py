@@ -86,16 +86,16 @@ def _single_cycle_orbit(model: Model) -> PeriodicOrbit:
     if runner.run((SETTLING + LONGEST_PERIOD) * unit_of_time) != Status.COMPLETED:
         raise OrbitError(f"a = {model.a!r}: the run from rest ends at τ = {runner.clock!r}")
     times, values = runner.log.events.times(), runner.log.events.values()
-    own = np.flatnonzero(values[:, 0] == 1)[-CYCLES - 1 :]
-    for first, second in pairwise(own.tolist()):
+    stops = np.flatnonzero(values[:, 0] == 1)[-CYCLES - 1 :]
+    for first, second in pairwise(stops.tolist()):
         try:
-            found = find_periodic_orbit(
+            orbit = find_periodic_orbit(
                 model, state_of(values[first, 2:]), float(times[second] - times[first]), Symmetry.SYNCHRONIZED
             )
         except OrbitError:
             continue
-        if found.stop_counts[0] == 1:
-            return found
+        if orbit.stop_counts[0] == 1:
+            return orbit
     raise OrbitError(f"a = {model.a!r}: no synchronized orbit with one stop per period")
 
 

@@ -127,36 +127,36 @@ def _follow_one_way(
 ) -> Iterator[CurvePoint]:
     """Yield the points after the first one; at first the second parameter increases (side 1) or decreases (−1)."""
     direction, length = np.array([0.0, side]), settings.first_step
-    before, here, count = None, first, 1
+    before, point, count = None, first, 1
     while count < settings.max_orbits and length >= settings.smallest_step:
-        if not interval[0] <= parameter_value(here.orbit.model, plane.names[1]) <= interval[1]:
+        if not interval[0] <= parameter_value(point.orbit.model, plane.names[1]) <= interval[1]:
             return
         try:
-            following = _step(plane, before, here, direction, length)
+            following = _step(plane, before, point, direction, length)
         except OrbitError:
             length *= STEP_REDUCTION
             continue
-        change = plane.place(following.orbit.model) - plane.place(here.orbit.model)
+        change = plane.place(following.orbit.model) - plane.place(point.orbit.model)
         turned = change / np.linalg.norm(change)
         # The first direction is a guess. The curve has a corner where the orbit also grazes elsewhere.
         if before is not None and length > CORNER and turned @ direction < STRAIGHT:
             length *= STEP_REDUCTION
             continue
         yield following
-        before, here, direction = here.orbit, following, turned
+        before, point, direction = point.orbit, following, turned
         length, count = min(STEP_GROWTH * length, settings.largest_step), count + 1
 
 
 def _step(
-    plane: BifurcationPlane, before: PeriodicOrbit | None, here: CurvePoint, direction: np.ndarray, length: float
+    plane: BifurcationPlane, before: PeriodicOrbit | None, point: CurvePoint, direction: np.ndarray, length: float
 ) -> CurvePoint:
     """Return the next point of the curve after two others; raises OrbitError if there is none at this length."""
-    orbit, place = here.orbit, plane.place(here.orbit.model)
+    orbit, place = point.orbit, plane.place(point.orbit.model)
     model = model_at(orbit.model, plane.names, (place + length * direction) * plane.units)
     vector, time, blocks = orbit.reference.vector(), orbit.return_time, model.blocks
     if before is not None:
         share = length / float(np.linalg.norm(place - plane.place(before.model)))
-        last = flow(before.model, before.reference, here.offset)[0].state()
+        last = flow(before.model, before.reference, point.offset)[0].state()
         vector = vector + share * (vector - last.vector())
         time += share * (time - before.return_time)
     elif plane.kind != BifurcationKind.FOLD:

@@ -101,23 +101,23 @@ class BifurcationPlane:
         tangent = tangent_of(near, self.line(near.model, direction))
 
         def orbit_at(distance: float) -> PeriodicOrbit:
-            found = solve_ahead(model, guess, time, self.symmetry, line, tangent, distance, target_residual=0.0)
-            if abs(found.return_time - time) > CHANGE * time or not any(found.stop_counts):
+            orbit = solve_ahead(model, guess, time, self.symmetry, line, tangent, distance, target_residual=0.0)
+            if abs(orbit.return_time - time) > CHANGE * time or not any(orbit.stop_counts):
                 raise OrbitError(f"{line.place(model)}: no orbit found near the guess")
-            return found
+            return orbit
 
         longest = FARTHEST * max(length, PROBE)
         if self.kind == BifurcationKind.GRAZING:
-            found, errors = self._grazing(_first_with(self.stops, orbit_at, longest), line)
+            orbit, errors = self._grazing(_first_with(self.stops, orbit_at, longest), line)
         else:
-            found, errors = self._root(orbit_at(0.0), line, longest)
-            if kind_at(BranchOrbit(found, tangent, line), self.key) != self.kind:
-                raise OrbitError(f"{line.place(found.model)}: the bifurcation becomes another one")
-        offset = safe_offset(found)
+            orbit, errors = self._root(orbit_at(0.0), line, longest)
+            if kind_at(BranchOrbit(orbit, tangent, line), self.key) != self.kind:
+                raise OrbitError(f"{line.place(orbit.model)}: the bifurcation becomes another one")
+        offset = safe_offset(orbit)
         if offset:
-            state = flow(found.model, found.reference, offset)[0].state()
-            found = orbit_of(found.model, state, found.return_time, self.symmetry)
-        return CurvePoint(found, np.maximum(errors * self.units, ROUNDING), offset)
+            state = flow(orbit.model, orbit.reference, offset)[0].state()
+            orbit = orbit_of(orbit.model, state, orbit.return_time, self.symmetry)
+        return CurvePoint(orbit, np.maximum(errors * self.units, ROUNDING), offset)
 
     def _root(self, orbit: PeriodicOrbit, line: ParameterLine, longest: float) -> tuple[PeriodicOrbit, np.ndarray]:
         """Return the orbit at which the test function vanishes, and half the widths of the bracket in the plane."""
@@ -132,17 +132,17 @@ class BifurcationPlane:
         def value(distance: float) -> float:
             return critical_values(orbit_at(distance))[self.key]
 
-        before, here = 0.0, PROBE
-        values = value(before), value(here)
+        before, length = 0.0, PROBE
+        values = value(before), value(length)
         for _ in range(ITERATIONS):
-            if values[0] == values[1] or abs(here - before) < CONVERGED:
+            if values[0] == values[1] or abs(length - before) < CONVERGED:
                 break
-            before, here = here, here - values[1] * (here - before) / (values[1] - values[0])
-            values = values[1], value(here)
+            before, length = length, length - values[1] * (length - before) / (values[1] - values[0])
+            values = values[1], value(length)
         for side in BRACKETS:
-            low, high = orbit_at(here - side), orbit_at(here + side)
+            low, high = orbit_at(length - side), orbit_at(length + side)
             if critical_values(low)[self.key] * critical_values(high)[self.key] < 0.0:
-                return orbit_at(here), 0.5 * np.abs(self.place(high.model) - self.place(low.model))
+                return orbit_at(length), 0.5 * np.abs(self.place(high.model) - self.place(low.model))
         raise OrbitError(f"{self.kind.name.lower()}: no root found near the guess")
 
     def _grazing(self, orbit: PeriodicOrbit, line: ParameterLine) -> tuple[PeriodicOrbit, np.ndarray]:
@@ -151,23 +151,23 @@ class BifurcationPlane:
         distance = self._distance(orbit)
         for _ in range(ITERATIONS):
             try:
-                found = solve_ahead(
+                candidate = solve_ahead(
                     orbit.model, orbit.reference, orbit.return_time, self.symmetry, line, tangent, length
                 )
-                if found.stop_counts != self.stops:
-                    raise OrbitError(f"stops: got {found.stop_counts}, expected {self.stops}")
+                if candidate.stop_counts != self.stops:
+                    raise OrbitError(f"stops: got {candidate.stop_counts}, expected {self.stops}")
             except OrbitError:
                 length *= STEP_REDUCTION
                 continue
-            left = self._distance(found)
+            left = self._distance(candidate)
             if left == distance:
                 break
             ahead = length * left / (distance - left)
             if abs(ahead) < CORNER_DISTANCE:
-                return found, np.abs(self.place(found.model) - self.place(orbit.model)) * abs(ahead / length)
-            following = tangent_of(found, line)
-            tangent = following if following @ (weights(found.model, line) * tangent) > 0.0 else -following
-            orbit, distance, length = found, left, LARGEST_SHARE * ahead
+                return candidate, np.abs(self.place(candidate.model) - self.place(orbit.model)) * abs(ahead / length)
+            following = tangent_of(candidate, line)
+            tangent = following if following @ (weights(candidate.model, line) * tangent) > 0.0 else -following
+            orbit, distance, length = candidate, left, LARGEST_SHARE * ahead
         raise OrbitError(f"{line.place(orbit.model)}: no grazing found near the guess")
 
     def _distance(self, orbit: PeriodicOrbit) -> float:

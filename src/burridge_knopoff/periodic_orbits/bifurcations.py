@@ -156,31 +156,31 @@ def _grazing(point: BranchOrbit, following: BranchOrbit | None) -> Bifurcation:
 def _roots(first: BranchOrbit, second: BranchOrbit) -> list[Bifurcation]:
     """Return the bifurcations between two neighbouring orbits with the same stops, sorted along the branch."""
     signs = [critical_values(point.orbit, point.multipliers) for point in (first, second)]
-    found: list[tuple[float, Bifurcation]] = []
+    roots: list[tuple[float, Bifurcation]] = []
     for key in signs[0].keys() & signs[1].keys():
         if (signs[0][key] > 0.0) != (signs[1][key] > 0.0):
             root = _root(first, second, key)
             if root is not None:
-                found.append(root)
-    return [bifurcation for _, bifurcation in sorted(found, key=lambda item: item[0])]
+                roots.append(root)
+    return [bifurcation for _, bifurcation in sorted(roots, key=lambda item: item[0])]
 
 
 def _root(
     first: BranchOrbit, second: BranchOrbit, key: tuple[BifurcationKind, str]
 ) -> tuple[float, Bifurcation] | None:
     """Return the root of a function between two orbits as a length from the first, and the bifurcation there."""
-    known: dict[float, BranchOrbit] = {0.0: first, second.length: second}
+    points: dict[float, BranchOrbit] = {0.0: first, second.length: second}
 
     def value(length: float) -> float:
-        if length not in known:
-            known[length] = step_along(first, length)
-        point = known[length]
+        if length not in points:
+            points[length] = step_along(first, length)
+        point = points[length]
         return critical_values(point.orbit, point.multipliers)[key]
 
     try:
-        root = float(brentq(value, 0.0, max(known), xtol=TOLERANCE, rtol=1e-12))
+        root = float(brentq(value, 0.0, max(points), xtol=TOLERANCE, rtol=1e-12))
         value(root)
-        at = known[root]
+        at = points[root]
         for side in BRACKETS:
             if value(root - side) * value(root + side) < 0.0:
                 break
@@ -188,7 +188,7 @@ def _root(
             return None
     except OrbitError:
         return None
-    low, high = known[root - side], known[root + side]
+    low, high = points[root - side], points[root + side]
     kind = kind_at(at, key)
     is_turning_point = first.tangent[-1] * second.tangent[-1] < 0.0
     # If a symmetry other than the mirror symmetry breaks, such as that of a ring, a multiplier is +1 without a fold.
@@ -207,18 +207,18 @@ def _branch_points(point: BranchOrbit, following: BranchOrbit) -> list[Bifurcati
     reach = BRANCH_POINT_RANGE * abs(following.value - point.value) + lengths
     around = following.value - reach, following.value + reach
     kind = _branch_point_kind(point.orbit, simple)
-    found = []
+    candidates = []
     for upward in (True, False):
-        found += [
+        candidates += [
             bifurcation
             for bifurcation in locate_bifurcations(
                 follow(simple, around, parameter=point.line.parameter, upward=upward)
             )
             if bifurcation.kind == kind
         ]
-    if not found:
+    if not candidates:
         return []
-    bifurcation = min(found, key=lambda bifurcation: abs(bifurcation.value - following.value))
+    bifurcation = min(candidates, key=lambda bifurcation: abs(bifurcation.value - following.value))
     return [Bifurcation(bifurcation.value, bifurcation.error, bifurcation.kind, bifurcation.at, point, None, False)]
 
 

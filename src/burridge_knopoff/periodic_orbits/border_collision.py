@@ -53,9 +53,9 @@ def distance_to_grazing(before: BranchOrbit, point: BranchOrbit) -> float:
 
     The grazing distance decreases in proportion to the length.
     """
-    last, here = before.grazing_distances.values(), point.grazing_distances.values()
+    last, distances = before.grazing_distances.values(), point.grazing_distances.values()
     with np.errstate(invalid="ignore", divide="ignore"):
-        ahead = here * point.length / (last - here)
+        ahead = distances * point.length / (last - distances)
     ahead = ahead[np.isfinite(ahead) & (ahead > 0.0)]
     return float(ahead.min()) if len(ahead) else np.inf
 
@@ -69,15 +69,15 @@ def smooth_step(path: Sequence[BranchOrbit], length: float) -> BranchOrbit | Non
     """
     point = path[-1]
     try:
-        found = step_along(point, length)
+        candidate = step_along(point, length)
     except OrbitError:
         return None
-    if found.orbit.stop_counts != point.orbit.stop_counts:
+    if candidate.orbit.stop_counts != point.orbit.stop_counts:
         return None
-    simpler = reduced_orbit(found.orbit)
+    simpler = reduced_orbit(candidate.orbit)
     if simpler is not None and not _distance_to_branch_point(path) <= STEPS_TO_BRANCH_POINT * length:
         return None
-    return replace(found, reduced_orbit=simpler)
+    return replace(candidate, reduced_orbit=simpler)
 
 
 def _distance_to_branch_point(path: Sequence[BranchOrbit]) -> float:
@@ -87,11 +87,12 @@ def _distance_to_branch_point(path: Sequence[BranchOrbit]) -> float:
     """
     if len(path) < 2:
         return np.inf
-    before, here = (
-        critical_values(one.orbit, one.multipliers)[BifurcationKind.FOLD, "symmetry_preserving"] for one in path[-2:]
+    before, value = (
+        critical_values(point.orbit, point.multipliers)[BifurcationKind.FOLD, "symmetry_preserving"]
+        for point in path[-2:]
     )
-    nearer = abs(before) - abs(here)
-    return abs(here) * path[-1].length / nearer if nearer > 0.0 else np.inf
+    nearer = abs(before) - abs(value)
+    return abs(value) * path[-1].length / nearer if nearer > 0.0 else np.inf
 
 
 def approach_grazing(before: Sequence[BranchOrbit], length: float) -> list[BranchOrbit]:
@@ -104,21 +105,21 @@ def approach_grazing(before: Sequence[BranchOrbit], length: float) -> list[Branc
     for _ in range(STEPS):
         if sum(point.length for point in path) > length or failures > FAILURES:
             break
-        known = [*before[-2:], *path]
-        found = smooth_step(known, step)
-        if found is None:
+        points = [*before[-2:], *path]
+        candidate = smooth_step(points, step)
+        if candidate is None:
             failures += 1
             share *= STEP_REDUCTION
             step *= STEP_REDUCTION
             if step < CORNER_DISTANCE:
                 break
             continue
-        ahead = distance_to_grazing(known[-1], found)
-        path.append(found)
-        if found.reduced_orbit is not None:
+        ahead = distance_to_grazing(points[-1], candidate)
+        path.append(candidate)
+        if candidate.reduced_orbit is not None:
             break
         if ahead < CORNER_DISTANCE:
-            return [*path[:-1], replace(found, distance_to_grazing=ahead)]
+            return [*path[:-1], replace(candidate, distance_to_grazing=ahead)]
         share = min(SHARE_GROWTH * share, LARGEST_SHARE)
         step = min(share * ahead, length)
     return path
@@ -130,31 +131,31 @@ def switch_branch(point: BranchOrbit) -> BranchOrbit | None:
     if has_friction_drop(orbit.model):
         return None
     blocks = orbit.model.blocks
-    own = line.units.state(blocks)
-    change = point.tangent[:-2] / max(float(np.abs(point.tangent[:-2] / own).max()), 1e-3)
+    scale = line.units.state(blocks)
+    change = point.tangent[:-2] / max(float(np.abs(point.tangent[:-2] / scale).max()), 1e-3)
     for beyond in OFFSETS_BEYOND:
         vector = orbit.reference.vector() + beyond * change
         state = ChainState(vector[:blocks], vector[blocks:], orbit.reference.stuck)
         try:
-            there = line.coordinate(orbit.model) + beyond * float(point.tangent[-1])
-            model = line.model(orbit.model, max(there, line.lower_bound))
+            coordinate = line.coordinate(orbit.model) + beyond * float(point.tangent[-1])
+            model = line.model(orbit.model, max(coordinate, line.lower_bound))
             tangent = tangent_of(orbit_of(model, state, orbit.return_time, orbit.symmetry), line)
         except OrbitError:
             continue
         for length in FIRST_STEPS:
             for side in (1.0, -1.0):
                 try:
-                    found = step_along(point, length, side * tangent)
+                    candidate = step_along(point, length, side * tangent)
                 except OrbitError:
                     continue
                 # Reject an orbit without stops, which is neutral, as at a = 0. Reject multiple traversals of a simpler
                 # orbit near the corner, which does not continue the branch. Reject the mirror image of the path itself:
                 # its corner is then the point at which less symmetric orbits begin.
-                signature = found.orbit.stop_counts
+                signature = candidate.orbit.stop_counts
                 if (
                     signature not in (orbit.stop_counts, orbit.stop_counts[::-1])
                     and any(signature)
-                    and reduced_orbit(found.orbit) is None
+                    and reduced_orbit(candidate.orbit) is None
                 ):
-                    return found
+                    return candidate
     return None

@@ -32,12 +32,12 @@ class HalfBranch:
     @cached_property
     def bifurcations(self) -> list[Bifurcation]:
         """Bifurcations that the stable orbits pass, and the one at which they end if it was reached."""
-        found = []
+        bifurcations = []
         for bifurcation in locate_bifurcations(self.orbits):
-            found.append(bifurcation)
+            bifurcations.append(bifurcation)
             if bifurcation.loses_stability:
                 break
-        return found
+        return bifurcations
 
     @cached_property
     def end(self) -> Bifurcation | None:
@@ -66,8 +66,8 @@ class BranchSegment:
         low = self.downward.end.a if self.downward.end else -np.inf
         high = self.upward.end.a if self.upward.end else np.inf
         both = (*self.downward.orbits[:0:-1], *self.upward.orbits)
-        found = [point for point in both if point.multipliers.unstable_count == 0 and low <= point.orbit.a <= high]
-        return sorted(found, key=lambda point: point.orbit.a)
+        points = [point for point in both if point.multipliers.unstable_count == 0 and low <= point.orbit.a <= high]
+        return sorted(points, key=lambda point: point.orbit.a)
 
     @property
     def drawn_orbits(self) -> list[BranchOrbit]:

@@ -39,42 +39,44 @@ class MultiplierTest:
         return self.part in ("both", part) and not (part == "symmetry_preserving" and other)
 
 
-def _pairs(own: np.ndarray) -> np.ndarray:
+def _pairs(mu: np.ndarray) -> np.ndarray:
     """Return the products of all pairs of multipliers."""
-    return np.array([one * other for one, other in combinations(own, 2)])
+    return np.array([one * other for one, other in combinations(mu, 2)])
 
 
-def _is_complex(own: np.ndarray) -> bool:
+def _is_complex(mu: np.ndarray) -> bool:
     """Return whether the pair of multipliers whose product is closest to 1 is complex, not real as at a saddle."""
-    one, _ = min(combinations(own, 2), key=lambda pair: abs(pair[0] * pair[1] - 1.0))
-    return abs(one.imag) > REAL
+    first, _ = min(combinations(mu, 2), key=lambda pair: abs(pair[0] * pair[1] - 1.0))
+    return abs(first.imag) > REAL
 
 
 #: Tests of the kinds that multipliers determine. Each kind has at most one test per part of the perturbations.
 MULTIPLIER_TESTS = (
-    MultiplierTest(BifurcationKind.FOLD, lambda own: np.prod(own - 1.0), "symmetry_preserving"),
-    MultiplierTest(BifurcationKind.PITCHFORK, lambda own: np.prod(own - 1.0), "symmetry_breaking"),
-    MultiplierTest(BifurcationKind.PITCHFORK, lambda own: np.prod(own + 1.0), "symmetry_preserving", symmetric=True),
-    MultiplierTest(BifurcationKind.PERIOD_DOUBLING, lambda own: np.prod(own + 1.0), symmetric=False),
+    MultiplierTest(BifurcationKind.FOLD, lambda mu: np.prod(mu - 1.0), "symmetry_preserving"),
+    MultiplierTest(BifurcationKind.PITCHFORK, lambda mu: np.prod(mu - 1.0), "symmetry_breaking"),
+    MultiplierTest(BifurcationKind.PITCHFORK, lambda mu: np.prod(mu + 1.0), "symmetry_preserving", symmetric=True),
+    MultiplierTest(BifurcationKind.PERIOD_DOUBLING, lambda mu: np.prod(mu + 1.0), symmetric=False),
     # The function also vanishes if the product of two real multipliers is 1, which is no bifurcation.
-    MultiplierTest(BifurcationKind.NEIMARK_SACKER, lambda own: np.prod(_pairs(own) - 1.0), is_root=_is_complex),
+    MultiplierTest(BifurcationKind.NEIMARK_SACKER, lambda mu: np.prod(_pairs(mu) - 1.0), is_root=_is_complex),
 )
 
 
-def critical_values(orbit: PeriodicOrbit, found: Multipliers | None = None) -> dict[tuple[BifurcationKind, str], float]:
+def critical_values(
+    orbit: PeriodicOrbit, spectrum: Multipliers | None = None
+) -> dict[tuple[BifurcationKind, str], float]:
     """Return the values of the test functions, {(kind of bifurcation, part of the perturbations): value}.
 
     Each is a smooth function that changes sign at the bifurcation, such as the product of all μ − 1; see
     MULTIPLIER_TESTS.
     """
-    found = multipliers(orbit) if found is None else found
+    spectrum = multipliers(orbit) if spectrum is None else spectrum
     return {
-        (test.kind, part): float(test.value(own).real)
-        for part, own in (
-            ("symmetry_preserving", found.symmetry_preserving),
-            ("symmetry_breaking", found.symmetry_breaking),
+        (test.kind, part): float(test.value(mu).real)
+        for part, mu in (
+            ("symmetry_preserving", spectrum.symmetry_preserving),
+            ("symmetry_breaking", spectrum.symmetry_breaking),
         )
-        if len(own)
+        if len(mu)
         for test in MULTIPLIER_TESTS
         if test.is_applicable(part, orbit.symmetry)
     }

@@ -90,10 +90,10 @@ def multipliers(orbit: PeriodicOrbit) -> Multipliers:
     if orbit.symmetry != Symmetry.SYNCHRONIZED:
         breaking = breaking[:, :0]
     units = orbit.model.chain.own_units
-    own = units.state(orbit.model.blocks)
-    flow = (rate(orbit.model, orbit.reference) * units.time / own) @ keeping
+    scale = units.state(orbit.model.blocks)
+    flow = (rate(orbit.model, orbit.reference) * units.time / scale) @ keeping
     across = keeping @ np.linalg.svd(flow[:, None])[0][:, 1:]
-    monodromy = orbit.monodromy * own / own[:, None]
+    monodromy = orbit.monodromy * scale / scale[:, None]
     kept, broken = (_sorted(np.linalg.eigvals(basis.T @ monodromy @ basis)) for basis in (across, breaking))
     return Multipliers(kept, broken, power=2 if orbit.symmetry == Symmetry.SYMMETRIC else 1)
 

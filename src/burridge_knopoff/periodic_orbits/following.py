@@ -119,9 +119,9 @@ def follow(
         return len(points) < settings.max_orbits and low <= points[-1].value <= high and not is_complete(points)
 
     while continues():
-        found = smooth_step(points, length)
-        if found is not None:
-            path = [found]
+        candidate = smooth_step(points, length)
+        if candidate is not None:
+            path = [candidate]
             length = min(STEP_GROWTH * length, settings.largest_step)
         else:
             path = approach_grazing(points, length)
@@ -166,5 +166,5 @@ def _passed_orbit(first: BranchOrbit, second: BranchOrbit) -> PeriodicOrbit | No
     ]
     if signs[0] * signs[1] < 0.0:
         return None
-    found = minimal_form(first.orbit, REDUCTION_DISTANCE)
-    return None if found is first.orbit else found
+    simpler = minimal_form(first.orbit, REDUCTION_DISTANCE)
+    return None if simpler is first.orbit else simpler

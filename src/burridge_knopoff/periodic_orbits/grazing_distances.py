@@ -112,8 +112,8 @@ def grazing_distances(orbit: PeriodicOrbit) -> GrazingDistances:
             for k in sorted(np.flatnonzero(minima), key=lambda k: moving[k, block])[:REFINED_MINIMA]:
                 share = _root(acceleration[k : k + 2, block], jerk[k : k + 2, block] * spacing)
                 at = state_after(again, ChainState(position[k], velocity[k], stuck[k]), share * spacing)
-                here = _derivatives(model, at.position[None], at.velocity[None], at.stuck[None])
-                change, second = float(here[2][0, block]), float(here[3][0, block])
+                expansion = _derivatives(model, at.position[None], at.velocity[None], at.stuck[None])
+                change, second = float(expansion[2][0, block]), float(expansion[3][0, block])
                 speed[block] = min(speed[block], side * (at.velocity[block] - 0.5 * change**2 / second))
             sticks = whole[:, block] & stuck[:-1, block]
             peaks = sticks & (force_rate[:-1, block] > slack) & (force_rate[1:, block] < -slack)
@@ -136,13 +136,13 @@ def _decelerations(orbit: PeriodicOrbit) -> np.ndarray:
         state_after(runner, orbit.reference, orbit.period)
         events = runner.log.events.values()
         for number, threshold in enumerate(model.chain.thresholds):
-            own = events[events[:, 0] == number + 1]
-            position, velocity = np.split(own[:, 2:], 2, axis=1)
+            block_events = events[events[:, 0] == number + 1]
+            position, velocity = np.split(block_events[:, 2:], 2, axis=1)
             force = _derivatives(model, position, velocity, velocity == 0.0)[0][:, number]
             # A slip has the direction of the force at its start, the event before its stop.
             along = np.sign(np.roll(force, 1)) * force
             decelerations = (threshold * float(model.law(0.0)) - along) / model.chain.masses[number]
-            least[number] = decelerations[own[:, 1] == 0].min(initial=np.inf)
+            least[number] = decelerations[block_events[:, 1] == 0].min(initial=np.inf)
     return least
 
 

@@ -26,34 +26,34 @@ class KnownOrbits:
     """
 
     def __init__(self, first: PeriodicOrbit) -> None:
-        self.known: dict[float, PeriodicOrbit] = {first.a: refine_orbit(first)}
+        self.orbits: dict[float, PeriodicOrbit] = {first.a: refine_orbit(first)}
 
     @property
     def model(self) -> Model:
         """The model of the orbits, at the a of the first one."""
-        return next(iter(self.known.values())).model
+        return next(iter(self.orbits.values())).model
 
     def at(self, a: float) -> PeriodicOrbit:
         """Return the orbit at a > 0; raises OrbitError if the continuation fails on the way, and for other a."""
-        if a in self.known:
-            return self.known[a]
+        if a in self.orbits:
+            return self.orbits[a]
         if not a > 0.0:
             raise OrbitError(f"a = {a!r}: no orbits are searched for; expected 0 < a")
-        here = min(self.known, key=lambda known: abs(known - a))
+        current = min(self.orbits, key=lambda value: abs(value - a))
         unit = self.model.chain.own_units.slope
         step = largest = unit * LARGEST_STEP
-        while here != a:
-            reach = min(step, 0.5 * here) if a < here else step
-            there = a if abs(a - here) <= reach else here + math.copysign(reach, a - here)
+        while current != a:
+            reach = min(step, 0.5 * current) if a < current else step
+            target = a if abs(a - current) <= reach else current + math.copysign(reach, a - current)
             try:
-                self.known[there] = nearby_orbit(self.known[here], there)
+                self.orbits[target] = nearby_orbit(self.orbits[current], target)
             except OrbitError as error:
-                step = 0.5 * abs(there - here)
-                if step < unit * SMALLEST_STEP * min(1.0, here / largest):
+                step = 0.5 * abs(target - current)
+                if step < unit * SMALLEST_STEP * min(1.0, current / largest):
                     raise OrbitError(f"{error}, on the way to a = {a!r}") from None
                 continue
-            here = there
-        return self.known[a]
+            current = target
+        return self.orbits[a]
 
 
 def nearby_orbit(orbit: PeriodicOrbit, a: float) -> PeriodicOrbit:
@@ -62,7 +62,7 @@ def nearby_orbit(orbit: PeriodicOrbit, a: float) -> PeriodicOrbit:
     Raises OrbitError if it is not found.
     """
     model = model_at(orbit.model, a)
-    found = refine_orbit(find_periodic_orbit(model, orbit.reference, orbit.return_time, orbit.symmetry))
-    if abs(found.period - orbit.period) > LARGEST_PERIOD_CHANGE * orbit.period:
+    neighbour = refine_orbit(find_periodic_orbit(model, orbit.reference, orbit.return_time, orbit.symmetry))
+    if abs(neighbour.period - orbit.period) > LARGEST_PERIOD_CHANGE * orbit.period:
         raise OrbitError(f"a = {a!r}: no periodic orbit found near the guess")
-    return found
+    return neighbour

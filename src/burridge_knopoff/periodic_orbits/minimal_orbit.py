@@ -35,14 +35,14 @@ def minimal_form(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
         if np.abs((end.vector() - orbit.reference.vector()) / orbit.model.state_scale).max() > tolerance:
             continue
         try:
-            found = find_periodic_orbit(orbit.model, orbit.reference, time, symmetry)
+            simpler = find_periodic_orbit(orbit.model, orbit.reference, time, symmetry)
         except OrbitError:
             continue
-        if abs(found.return_time - time) > SAME_TIME * time:
+        if abs(simpler.return_time - time) > SAME_TIME * time:
             continue
-        repeats = round(orbit.period / found.period)
-        if tuple(repeats * stops for stops in found.stop_counts) == orbit.stop_counts:
-            return minimal_form(found, tolerance)
+        repeats = round(orbit.period / simpler.period)
+        if tuple(repeats * stops for stops in simpler.stop_counts) == orbit.stop_counts:
+            return minimal_form(simpler, tolerance)
     return orbit
 
 
@@ -51,8 +51,8 @@ def reduced_orbit(orbit: PeriodicOrbit) -> PeriodicOrbit | None:
     mirrored = orbit.symmetry == Symmetry.ASYMMETRIC and orbit.stop_counts == orbit.stop_counts[::-1]
     if not mirrored and gcd(*orbit.stop_counts) == 1:
         return None
-    found = minimal_form(orbit, SAME_STATE)
-    return None if found is orbit else found
+    simpler = minimal_form(orbit, SAME_STATE)
+    return None if simpler is orbit else simpler
 
 
 def _reduced_forms(orbit: PeriodicOrbit) -> Iterator[tuple[float, Symmetry]]:

@@ -185,23 +185,23 @@ def solve_return(
     Raises OrbitError if Newton's method does not converge.
     """
     units, basis = model.chain.own_units, allowed_directions(start.stuck, symmetry)
-    own = units.state(model.blocks)
-    phase = basis.T @ (rate(model, start) * units.time / own)
+    scale = units.state(model.blocks)
+    phase = basis.T @ (rate(model, start) * units.time / scale)
     count, unknowns = basis.shape[1], basis.shape[1] + (1 if constraint is None else 2)
     first, initial_time, last = start.vector(), time, np.inf
     state, blocks = first.copy(), model.blocks
     by_parameter: np.ndarray | None = None
     mapping = ReturnMap(model, symmetry)
     for iteration in range(ITERATIONS):
-        here = ChainState(state[:blocks], state[blocks:], start.stuck)
-        end, changed = mapping.end_and_tangent(here, time)
-        difference = (end.vector() - state) / own
+        reference = ChainState(state[:blocks], state[blocks:], start.stuck)
+        end, changed = mapping.end_and_tangent(reference, time)
+        difference = (end.vector() - state) / scale
         values = np.zeros(unknowns)
         values[:count] = basis.T @ difference
-        values[count] = phase @ (basis.T @ ((state - first) / own))
+        values[count] = phase @ (basis.T @ ((state - first) / scale))
         jacobian = np.zeros((unknowns, unknowns))
-        jacobian[:count, :count] = basis.T @ (changed * own / own[:, None]) @ basis - np.eye(count)
-        jacobian[:count, count] = basis.T @ (mapping.time_derivative(end) * units.time / own)
+        jacobian[:count, :count] = basis.T @ (changed * scale / scale[:, None]) @ basis - np.eye(count)
+        jacobian[:count, count] = basis.T @ (mapping.time_derivative(end) * units.time / scale)
         jacobian[count, :count] = phase
         if constraint is not None:
             vector, line, (position, duration, coordinate) = constraint.vector, constraint.line, constraint.origin
@@ -210,14 +210,14 @@ def solve_return(
             # Computed once: it is expensive and nearly constant between iterations.
             if by_parameter is None:
                 events = mapping.event_rows()[:, 1:]
-                by_parameter = basis.T @ (mapping.parameter_derivative(here, time, end, events, line) / own)
+                by_parameter = basis.T @ (mapping.parameter_derivative(reference, time, end, events, line) / scale)
             jacobian[:count, -1] = by_parameter
-            jacobian[-1] = np.concatenate([(vector[:-2] * own) @ basis, [vector[-2] * units.time, vector[-1]]])
+            jacobian[-1] = np.concatenate([(vector[:-2] * scale) @ basis, [vector[-2] * units.time, vector[-1]]])
         size, speed = float(np.abs(values).max()), model.v / units.velocity
         if size <= target_residual or (size <= TOLERANCE * max(1.0, speed) and size > 0.25 * last):
             if np.abs(difference).max() > TOLERANCE * max(1.0, speed) or (end.stuck != start.stuck).any():
                 break
-            return PeriodicOrbit(model, symmetry, here, time, end, changed, _event_rows(mapping, time))
+            return PeriodicOrbit(model, symmetry, reference, time, end, changed, _event_rows(mapping, time))
         if iteration > FREE_ITERATIONS and size > last:
             break
         last = size
@@ -227,7 +227,7 @@ def solve_return(
             break
         if not np.abs(step[:count]).max() < LARGEST_CORRECTION * speed:
             break
-        state = state + own * (basis @ step[:count])
+        state = state + scale * (basis @ step[:count])
         time += units.time * float(step[count])
         if not 0.0 < time < LARGEST_TIME_RATIO * initial_time:
             break
@@ -297,10 +297,10 @@ def find_periodic_orbit(model: Model, guess: ChainState, return_time: float, sym
     if symmetry == Symmetry.SYNCHRONIZED:
         vector = 0.5 * (guess.vector() + guess.vector()[mirror_order(model.blocks)])
         guess = ChainState(vector[: model.blocks], vector[model.blocks :], guess.stuck & guess.stuck[::-1])
-    found = solve_return(model, guess, return_time, symmetry)
-    if not any(found.stop_counts):
+    orbit = solve_return(model, guess, return_time, symmetry)
+    if not any(orbit.stop_counts):
         raise OrbitError(f"a = {model.a!r}: no periodic orbit found near the guess: no block stops there")
-    return found
+    return orbit
 
 
 def _event_rows(mapping: ReturnMap, time: float) -> np.ndarray:
@@ -317,8 +317,8 @@ def _safe_offset(times: list[float], period: float) -> float:
         return 0.0
     ordered = np.array([times[-1] - period, *times])
     gaps = np.diff(ordered)
-    here = min(ordered[1], -ordered[0])
-    if here >= NEAR_EVENT * gaps.max():
+    margin = min(ordered[1], -ordered[0])
+    if margin >= NEAR_EVENT * gaps.max():
         return 0.0
     longest = int(gaps.argmax())
     middle = 0.5 * float(ordered[longest] + ordered[longest + 1])

@@ -50,10 +50,10 @@ def branching_orbit(critical: PeriodicOrbit, asymmetry: float, near: PeriodicOrb
     origin = base, center.return_time, line.coordinate(center.model)
     constraint = Constraint(difference, asymmetry / units.length, origin, line)
     model = model_at(center.model, a)
-    found = solve_return(model, start, time, Symmetry.ASYMMETRIC, constraint, target_residual=0.0)
-    if not abs(found.a - center.a) < LARGEST_OFFSET * center.a:
+    orbit = solve_return(model, start, time, Symmetry.ASYMMETRIC, constraint, target_residual=0.0)
+    if not abs(orbit.a - center.a) < LARGEST_OFFSET * center.a:
         raise OrbitError(f"asymmetry = {asymmetry!r}: no orbit found near a = {center.a!r}")
-    return found
+    return orbit
 
 
 def displace_end_blocks(state: ChainState, asymmetry: float) -> ChainState:

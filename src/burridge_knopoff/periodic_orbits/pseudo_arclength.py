@@ -111,7 +111,7 @@ def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
     if parameter == "a":
         return line_along_a(orbit.model.chain)
     units = orbit.model.chain.own_units
-    own = units.state(orbit.model.blocks)
+    state_scale = units.state(orbit.model.blocks)
     scale, change = parameter_scale(orbit.model, parameter), 0.0
     size = abs(value) if abs(value) > SMALL * scale else scale
     for step in (PART * size, -PART * size):
@@ -125,7 +125,7 @@ def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
         except ValueError:
             continue
         difference = end.vector() / model.scale - orbit.returned.vector() / orbit.model.scale
-        change = max(change, float(np.abs(difference * units.velocity / own).max() / abs(step)))
+        change = max(change, float(np.abs(difference * units.velocity / state_scale).max() / abs(step)))
     longest = max(LONGEST * abs(value), scale)
     return ParameterLine((parameter,), (value,), (min(longest, CHANGE / max(change, 1e-300)),), units=units)
 
@@ -141,28 +141,28 @@ def tangent_of(orbit: PeriodicOrbit, line: ParameterLine) -> np.ndarray:
     """Return the unit tangent of the branch at an orbit, of either sign."""
     model, start, time = orbit.model, orbit.reference, orbit.return_time
     basis, units = allowed_directions(start.stuck, orbit.symmetry), line.units
-    own = units.state(model.blocks)
+    scale = units.state(model.blocks)
     count = basis.shape[1]
     mapping, end = ReturnMap(model, orbit.symmetry), orbit.returned
     events = orbit.event_rows[orbit.event_rows[:, 0] <= time, 1:]
     matrix = np.zeros((count + 1, count + 2))
-    matrix[:count, :count] = basis.T @ (orbit.monodromy * own / own[:, None]) @ basis - np.eye(count)
-    matrix[:count, count] = basis.T @ (mapping.time_derivative(end) * units.time / own)
-    matrix[:count, count + 1] = basis.T @ (mapping.parameter_derivative(start, time, end, events, line) / own)
-    matrix[count, :count] = (rate(model, start) * units.time / own) @ basis
+    matrix[:count, :count] = basis.T @ (orbit.monodromy * scale / scale[:, None]) @ basis - np.eye(count)
+    matrix[:count, count] = basis.T @ (mapping.time_derivative(end) * units.time / scale)
+    matrix[:count, count + 1] = basis.T @ (mapping.parameter_derivative(start, time, end, events, line) / scale)
+    matrix[count, :count] = (rate(model, start) * units.time / scale) @ basis
     null = np.linalg.svd(matrix)[2][-1]
-    vector = np.concatenate([own * (basis @ null[:count]), [units.time * null[count], null[count + 1]]])
+    vector = np.concatenate([scale * (basis @ null[:count]), [units.time * null[count], null[count + 1]]])
     return vector / np.sqrt(weights(model, line) @ vector**2)
 
 
 def adapt_symmetry(line: ParameterLine, orbit: PeriodicOrbit) -> PeriodicOrbit:
     """Return an orbit with the symmetry of all models on a line: ASYMMETRIC if the line breaks the mirror symmetry."""
-    model, here = orbit.model, line.coordinate(orbit.model)
+    model, coordinate = orbit.model, line.coordinate(orbit.model)
     if orbit.symmetry == Symmetry.ASYMMETRIC:
         return orbit
     for step in (PART, -PART):
         try:
-            if not line.model(model, here + step).chain.is_mirror_symmetric:
+            if not line.model(model, coordinate + step).chain.is_mirror_symmetric:
                 return solve_return(model, orbit.reference, orbit.period, Symmetry.ASYMMETRIC)
         except OrbitError:
             continue
@@ -192,13 +192,13 @@ def solve_ahead(
 
     Raises OrbitError if none is found.
     """
-    blocks, base, here = model.blocks, reference.vector(), line.coordinate(model)
-    there = line.model(model, here + length * float(tangent[-1]))
+    blocks, base, coordinate = model.blocks, reference.vector(), line.coordinate(model)
+    model_ahead = line.model(model, coordinate + length * float(tangent[-1]))
     guess = base + length * tangent[:-2]
     start = ChainState(guess[:blocks], guess[blocks:], reference.stuck)
-    constraint = Constraint(weights(there, line) * tangent, length, (base, time, here), line)
+    constraint = Constraint(weights(model_ahead, line) * tangent, length, (base, time, coordinate), line)
     after = time + length * float(tangent[-2])
-    return solve_return(there, start, after, symmetry, constraint, target_residual)
+    return solve_return(model_ahead, start, after, symmetry, constraint, target_residual)
 
 
 def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = None) -> BranchOrbit:
@@ -210,19 +210,19 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
     """
     orbit, line = point.orbit, point.line
     tangent = point.tangent if tangent is None else tangent
-    found = solve_ahead(orbit.model, orbit.reference, orbit.return_time, orbit.symmetry, line, tangent, length)
-    model = found.model
-    following = tangent_of(found, line)
+    solution = solve_ahead(orbit.model, orbit.reference, orbit.return_time, orbit.symmetry, line, tangent, length)
+    model = solution.model
+    following = tangent_of(solution, line)
     cosine = float(following @ (weights(model, line) * tangent))
     if tangent is point.tangent and abs(cosine) < STRAIGHT:
         raise OrbitError(f"{line.place(model)}: the branch turns too sharply within a step of {length!r}")
     following = following if cosine > 0.0 else -following
-    offset = safe_offset(found)
+    offset = safe_offset(solution)
     if offset == 0.0:
-        return BranchOrbit(found, following, line, length)
-    carried = _carry_tangent(found, following, offset, line)
-    there = flow(model, found.reference, offset)[0].state()
-    moved = orbit_of(model, there, found.return_time, orbit.symmetry)
+        return BranchOrbit(solution, following, line, length)
+    carried = _carry_tangent(solution, following, offset, line)
+    state = flow(model, solution.reference, offset)[0].state()
+    moved = orbit_of(model, state, solution.return_time, orbit.symmetry)
     following = tangent_of(moved, line)
     side = following @ (weights(model, line) * carried)
     return BranchOrbit(moved, following if side > 0.0 else -following, line, length)
@@ -233,10 +233,10 @@ def _carry_tangent(orbit: PeriodicOrbit, tangent: np.ndarray, time: float, line:
     blocks = orbit.model.blocks
     vector = orbit.reference.vector() + PART * tangent[:-2]
     near = ChainState(vector[:blocks], vector[blocks:], orbit.reference.stuck)
-    here = flow(orbit.model, orbit.reference, time)[0].state()
+    end = flow(orbit.model, orbit.reference, time)[0].state()
     model = line.model(orbit.model, line.coordinate(orbit.model) + PART * float(tangent[-1]))
-    there = flow(model, near, time)[0].state()
-    own = line.units.state(blocks)
-    change = (there.vector() - here.vector()) / PART / own
-    along = rate(orbit.model, here) * line.units.time / own
-    return np.concatenate([own * (change - along * (along @ change) / (along @ along)), tangent[-2:]])
+    shifted_end = flow(model, near, time)[0].state()
+    scale = line.units.state(blocks)
+    change = (shifted_end.vector() - end.vector()) / PART / scale
+    along = rate(orbit.model, end) * line.units.time / scale
+    return np.concatenate([scale * (change - along * (along @ change) / (along @ along)), tangent[-2:]])

@@ -70,18 +70,18 @@ class ReturnMap:
         jump where two blocks stop at the same time and their order changes. Raises OrbitError if every step changes the
         stops and starts, or leads to no model.
         """
-        step, here, failure = STEP, line.coordinate(self.model), "no model at any step of this parameter"
+        step, coordinate, failure = STEP, line.coordinate(self.model), "no model at any step of this parameter"
         while step > SMALLEST_STEP:
-            for there in (here + step, here - step):
+            for neighbour in (coordinate + step, coordinate - step):
                 try:
-                    model = line.model(self.model, there)
+                    model = line.model(self.model, neighbour)
                 except OrbitError:
                     continue
                 failure = "stops and starts change at every step of this parameter"
                 runner = Runner(model, keep_events=True)
                 moved = self._mirrored(state_after(runner, start, time))
                 if np.array_equal(_by_block(np.stack(runner.events()[1:], axis=1)), _by_block(events)):
-                    return (moved.vector() - end.vector()) / (there - here)
+                    return (moved.vector() - end.vector()) / (neighbour - coordinate)
             step *= 0.1
         raise OrbitError(f"{line.place(self.model)}: {failure}")
 

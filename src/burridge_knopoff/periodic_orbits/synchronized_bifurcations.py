@@ -125,8 +125,8 @@ def grazing_a(bifurcations: list[Bifurcation], block: int) -> float:
         return (bifurcation.before.orbit.stop_counts[block] == 0) != (bifurcation.after.orbit.stop_counts[block] == 0)
 
     def signed_least_speed(orbit: PeriodicOrbit) -> float:
-        found = grazing_distances(orbit)
-        return -float(found.stick[block] ** 2) if orbit.stop_counts[block] else float(found.speed[block])
+        distances = grazing_distances(orbit)
+        return -float(distances.stick[block] ** 2) if orbit.stop_counts[block] else float(distances.speed[block])
 
     return _smallest_a(bifurcations, is_first_stick, signed_least_speed)
 
@@ -142,12 +142,12 @@ def _smallest_a(
 def _root(bifurcation: Bifurcation, value: Callable[[PeriodicOrbit], float]) -> float:
     """Return the root in a of a function of the orbit near a bifurcation; the a of the bifurcation if there is none."""
     orbit = bifurcation.at.orbit
-    own = orbit.model.chain.own_units.slope
+    unit = orbit.model.chain.own_units.slope
     for side in BRACKETS:
-        ends = bifurcation.a - own * side, bifurcation.a + own * side
+        ends = bifurcation.a - unit * side, bifurcation.a + unit * side
         try:
             if (value(nearby_orbit(orbit, ends[0])) > 0.0) != (value(nearby_orbit(orbit, ends[1])) > 0.0):
-                precise = {"xtol": own * TOLERANCE, "rtol": TOLERANCE, "maxiter": ITERATIONS}
+                precise = {"xtol": unit * TOLERANCE, "rtol": TOLERANCE, "maxiter": ITERATIONS}
                 return float(brentq(lambda a: value(nearby_orbit(orbit, a)), *ends, **precise))
         except OrbitError:
             continue
@@ -162,12 +162,12 @@ def finite_difference_multiplier(orbit: PeriodicOrbit) -> complex:
     """
     runner, start, blocks = Runner(orbit.model), orbit.reference, orbit.model.blocks
     basis, units = symmetry_breaking_directions(start.stuck), orbit.model.chain.own_units
-    own = units.state(blocks)
+    scale = units.state(blocks)
 
     def difference_quotient(direction: np.ndarray, d: float) -> np.ndarray:
-        state = start.vector() + d * own * direction
+        state = start.vector() + d * scale * direction
         end = state_after(runner, ChainState(state[:blocks], state[blocks:], start.stuck), orbit.return_time)
-        return basis.T @ (end.vector() / own) / d
+        return basis.T @ (end.vector() / scale) / d
 
     d = DIFFERENCE * orbit.model.v / units.velocity
     columns = [

@@ -42,11 +42,11 @@ def check_positive(function: Function, length: arb, root_at_start: bool = False,
     Raises ProofError with the time at which the proof failed, and if a root is not where it is assumed.
     """
     with arithmetic(3):
-        known = [
+        roots = [
             *(jet(function, arb(0))[:2] if root_at_start else ()),
             *(jet(function, length)[:1] if root_at_end else ()),
         ]
-        if not all(value.contains(0) for value in known):
+        if not all(value.contains(0) for value in roots):
             raise ProofError(f"there is no root at its {'start' if root_at_start else 'end'} that could be excluded")
         last = length.upper()
         pieces = [(0, 0)]
@@ -74,9 +74,9 @@ def _is_positive(function: Function, low: arb, high: arb, root_at_start: bool, r
 
 def bounds(function: Function, length: arb) -> arb:
     """Return a ball that contains all values of a function from time 0 to the length of an arc."""
-    found = [jet(function, piece)[0] for piece in _pieces(length)]
+    values = [jet(function, piece)[0] for piece in _pieces(length)]
     with arithmetic():
-        return ball_between(min(limits(value)[0] for value in found), max(limits(value)[1] for value in found))
+        return ball_between(min(limits(value)[0] for value in values), max(limits(value)[1] for value in values))
 
 
 def _pieces(length: arb) -> Iterator[arb]:

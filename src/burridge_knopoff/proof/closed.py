@@ -74,6 +74,6 @@ def _state_one_slipping(state: State, a: Any, time: Any, slipping: int) -> State
     x, other = state.position[slipping], state.position[1 - slipping]
     center = other / 2 - a / (2 * STIFFNESS[slipping])
     moved, rate = oscillation(STIFFNESS[slipping], a, time, x - center, state.velocity[slipping] + half)
-    here, there = (moved + center - half * time, rate - half), (other - time, -1)
-    (x, p), (y, q) = (here, there) if slipping == LATERAL else (there, here)
+    slip, stick = (moved + center - half * time, rate - half), (other - time, -1)
+    (x, p), (y, q) = (slip, stick) if slipping == LATERAL else (stick, slip)
     return replace(state, position=(x, y), velocity=(p, q))

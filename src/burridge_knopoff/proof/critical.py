@@ -82,12 +82,12 @@ def prove_critical(orbit: PeriodicOrbit) -> CriticalOrbit:
     """
     arcs, guess = arcs_of(orbit)
     system = equations(arcs, critical=True)
-    found = enclose_widest(system, refine_guess(system, [*guess, orbit.model.a]), arcs[0].flow.box_radii)
-    proved = ProvedOrbit(arcs, found.inner[-1], Enclosure(found.inner[:-1], found.outer[:-1]))
+    enclosure = enclose_widest(system, refine_guess(system, [*guess, orbit.model.a]), arcs[0].flow.box_radii)
+    proved = ProvedOrbit(arcs, enclosure.inner[-1], Enclosure(enclosure.inner[:-1], enclosure.outer[:-1]))
     proved.check_arcs()
     if not abs(proved.slope) > 0:
         raise ProofError(f"a = {proved.a}: not proved that the multiplier crosses 1: its slope is {proved.slope}")
-    return CriticalOrbit(proved, found.outer[-1])
+    return CriticalOrbit(proved, enclosure.outer[-1])
 
 
 def prove_branch(orbit: PeriodicOrbit, low: fmpq, high: fmpq) -> list[Piece]:
@@ -138,11 +138,11 @@ def _piece(arcs: Sequence[Arc], guess: Sequence[arb], first: fmpq, last: fmpq) -
         return system([*_point_near_tangent(middle, direction, at - center, distance), at])
 
     nothing = [arb(0)] * len(middle)
-    found = enclose(offset_equations, nothing, trial_radii(offset_equations, nothing, [a]), [a])
+    enclosure = enclose(offset_equations, nothing, trial_radii(offset_equations, nothing, [a]), [a])
     with arithmetic():
         inner, outer = (
             tuple(_point_near_tangent(middle, direction, a - center, distance))
-            for distance in (found.inner, found.outer)
+            for distance in (enclosure.inner, enclosure.outer)
         )
     proved = ProvedOrbit(tuple(arcs), a, Enclosure(inner, outer))
     proved.check_arcs()
@@ -150,7 +150,7 @@ def _piece(arcs: Sequence[Arc], guess: Sequence[arb], first: fmpq, last: fmpq) -
         raise ProofError(f"not proved that the multiplier increases with a: its slope is {proved.slope}")
     if not abs(proved.symmetric_multiplier) < 1:
         raise ProofError(f"not proved that symmetric perturbations decay: {proved.symmetric_multiplier}")
-    return Piece(proved, middle, direction, found.outer)
+    return Piece(proved, middle, direction, enclosure.outer)
 
 
 def _point_near_tangent(

@@ -42,13 +42,13 @@ def follow_arcs(arcs: Sequence[Arc], unknown: Sequence[Any]) -> tuple[list[State
     unknown : positions x and y of the blocks at rest, the duration of each arc, and a
     """
     *orbit, a = unknown
-    states, found = [State((orbit[0], orbit[1]), (-1, -1))], []
+    states, margins = [State((orbit[0], orbit[1]), (-1, -1))], []
     for arc, time in zip(arcs, orbit[POSITIONS:], strict=True):
         # The condition uses the state before the event: after a stop the speed is always 0.
         before = arc.state_after(states[-1], a, time)
-        found.append(arc.margin(arc.event_block, before, a))
+        margins.append(arc.margin(arc.event_block, before, a))
         states.append(arc.state_after_event(before))
-    return states, found
+    return states, margins
 
 
 def equations(arcs: Sequence[Arc], critical: bool = False) -> Equations:
@@ -58,9 +58,9 @@ def equations(arcs: Sequence[Arc], critical: bool = False) -> Equations:
     """
 
     def values(unknown: Sequence[Any]) -> list[Any]:
-        states, found = follow_arcs(arcs, unknown)
+        states, margins = follow_arcs(arcs, unknown)
         returned = [states[-1].position[k] - unknown[k] for k in range(POSITIONS)]
-        return [*found, *returned, *([states[-1].difference[0] - 1] if critical else [])]
+        return [*margins, *returned, *([states[-1].difference[0] - 1] if critical else [])]
 
     return values
 
@@ -181,14 +181,14 @@ class ProvedOrbit:
         return self._margin_range(False)
 
     def _margin_range(self, slipping: bool) -> arb:
-        found = [
+        ranges = [
             bounds(self._margin(arc, state, block), time)
             for arc, state, time in self._arcs_with_states()
             for block in (LATERAL, CENTER)
             if arc.slips[block] == slipping
         ]
         with arithmetic():
-            return reduce(arb.union, found)
+            return reduce(arb.union, ranges)
 
     def _margin(self, arc: Arc, state: State, block: int) -> Function:
         """Return the margin of a block as a function of the time since the beginning of an arc."""

@@ -113,18 +113,18 @@ class _Path:
         if not 0 <= whole.upper() < LONGEST_ARC:
             raise ProofError(f"time: got {whole}, expected 0 to {LONGEST_ARC}")
         first, last = (math.floor(end) for end in limits(whole / STEP))
-        found = None
+        box = None
         for number in range(max(first, 0), last + 1):
             values = self._state_within(number, whole)
-            found = values if found is None else [_union(one, other) for one, other in zip(found, values, strict=True)]
-        assert found is not None
+            box = values if box is None else [_union(one, other) for one, other in zip(box, values, strict=True)]
+        assert box is not None
         a = self.numbers[-1]
         if isinstance(time, arb_series):
             # Terms up to second order of the series around that time, which suffice for a power series in time.
             rest = time - whole
-            coefficients = self.law.series(self.slips, found, a, 2)
-            found = [one[0] + one[1] * rest + one[2] * rest * rest for one in coefficients]
-        x, y, p, q, d, e = found
+            coefficients = self.law.series(self.slips, box, a, 2)
+            box = [c[0] + c[1] * rest + c[2] * rest * rest for c in coefficients]
+        x, y, p, q, d, e = box
         rates = p if self.slips[0] else -1, q if self.slips[1] else -1
         return State((x, y), rates, (d, e if self.slips[LATERAL] else 0))
 
@@ -146,10 +146,10 @@ class _Path:
         *start, a = self.numbers if not self.pieces else [*self._end_state(), self.numbers[-1]]
         # Slightly longer than the step, so that rounded times lie inside.
         span = ball_between(0, arb(STEP) * fmpq(1001, 1000))
-        box = [_evaluate(one, span) for one in self.law.series(self.slips, start, a, 3)]
+        box = [_evaluate(c, span) for c in self.law.series(self.slips, start, a, 3)]
         for _ in range(WIDENINGS):
             box = [_widen(value) for value in box]
-            rates = [one[1] for one in self.law.series(self.slips, box, a, 1)]
+            rates = [c[1] for c in self.law.series(self.slips, box, a, 1)]
             image = [value + span * rate for value, rate in zip(start, rates, strict=True)]
             if all(_contains(value, mapped) for value, mapped in zip(box, image, strict=True)):
                 break
@@ -158,7 +158,7 @@ class _Path:
             raise ProofError(f"step {len(self.pieces) + 1} of an arc: found no box that contains the motion")
         remainders = self.law.series(self.slips, image, a, ORDER)
         series = self.law.series(self.slips, start, a, ORDER - 1)
-        self.pieces.append([[*one, rest[ORDER]] for one, rest in zip(series, remainders, strict=True)])
+        self.pieces.append([[*terms, rest[ORDER]] for terms, rest in zip(series, remainders, strict=True)])
 
     def _end_state(self) -> list[Any]:
         return [_evaluate(coefficients, arb(STEP)) for coefficients in self.pieces[-1]]

@@ -86,11 +86,11 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
     environment.globals.update(format_measured=format_measured)
     drawn = charts(study, summaries)
     if study.is_plane:
-        parts = _over_parameters(drawn)
+        parts = _content_over_parameters(drawn)
     else:
         grid = sources.points and Grid.from_points(sources.points, study.points)
         trajectories = embedded_trajectories(grid) if grid else None
-        parts = _over_a(study, summaries, drawn, arguments, verdicts, trajectories)
+        parts = _content_over_a(study, summaries, drawn, arguments, verdicts, trajectories)
     return environment.get_template("report.html.jinja").render(
         study=study.name,
         blocks=study.blocks,
@@ -114,7 +114,7 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
     )
 
 
-def _over_a(
+def _content_over_a(
     study: Study,
     summaries: Mapping[str, xarray.Dataset],
     drawn: Charts,
@@ -134,21 +134,21 @@ def _over_a(
         "moving": trajectories is not None,
         "laws": list(study.laws),
         "initial": list(study.initial),
-        "branches": _from_summary(summaries, "attractors", tables.branch_table, []),
-        "attractors": _from_summary(summaries, "attractors", lambda attractors: attractors.attrs),
-        "sliding": _from_summary(
+        "branches": _summary_content(summaries, "attractors", tables.branch_table, []),
+        "attractors": _summary_content(summaries, "attractors", lambda attractors: attractors.attrs),
+        "sliding": _summary_content(
             summaries, "attractors", lambda dataset: bool((dataset["sliding_attracts"] == 1).any()), False
         ),
         "proved": "proof" in summaries,
         "transitions": tables.transition_table(summaries["orbits"]),
-        "maps": _from_summary(summaries, "basins", tables.map_table, []),
+        "maps": _summary_content(summaries, "basins", tables.map_table, []),
         "agreement": digest(summaries["agreement"]).splitlines(),
-        "chains": _from_summary(summaries, "chains", tables.chain_table, []),
+        "chains": _summary_content(summaries, "chains", tables.chain_table, []),
         "unclear": unclear_runs(commands, summaries["mean_distance"], summaries["agreement"]),
     }
 
 
-def _over_parameters(drawn: Charts) -> dict[str, Any]:
+def _content_over_parameters(drawn: Charts) -> dict[str, Any]:
     """Return the content of the page that only a study over several parameters has."""
     return {"data": embedded_json({"dark": drawn.dark})}
 
@@ -170,7 +170,7 @@ def _data(
     return embedded_json({"runs": runs, "dark": dark, "trajectories": trajectories})
 
 
-def _from_summary(
+def _summary_content(
     summaries: Mapping[str, xarray.Dataset], name: str, make: Callable[[xarray.Dataset], Any], nothing: Any = None
 ) -> Any:
     """Return the result of `make` for a summary, or `nothing` if the study does not have the summary."""

@@ -24,7 +24,7 @@ def pack(value: Any) -> bytes:
     objects: list[Any] = []
     arrays: list[bytes] = []
     # Keep the objects: an address identifies an object only while the object exists.
-    known: dict[int, tuple[Any, int]] = {}
+    places: dict[int, tuple[Any, int]] = {}
 
     def pack_value(value: Any) -> Any:
         if type(value) in _PLAIN:
@@ -40,11 +40,11 @@ def pack(value: Any) -> bytes:
             return [type(value).__name__, *map(pack_value, value)]
         if type(value) is dict:
             return ["dict", *([pack_value(key), pack_value(item)] for key, item in value.items())]
-        if id(value) not in known:
+        if id(value) not in places:
             item = pack_array(value) if isinstance(value, np.ndarray) else pack_attributes(value)
-            known[id(value)] = value, len(objects)
+            places[id(value)] = value, len(objects)
             objects.append(item)
-        return ["object", known[id(value)][1]]
+        return ["object", places[id(value)][1]]
 
     def pack_array(value: np.ndarray) -> Any:
         if value.dtype.hasobject:

@@ -91,8 +91,8 @@ class ParallelMap:
         try:
             while running:
                 for future in wait_for(running, return_when=FIRST_COMPLETED).done:
-                    known = running.pop(future)
-                    for name, item in successors(*known, self._record(future.result())):
+                    pair = running.pop(future)
+                    for name, item in successors(*pair, self._record(future.result())):
                         running[self._pool.submit(call, item)] = name, item
                     done += 1
                 self._report(span, done / (done + len(running)))

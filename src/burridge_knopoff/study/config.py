@@ -164,7 +164,7 @@ PHASES = {
 }
 EDGES = {
     "a": Field(
-        replace(VALUES, each=A, distinct=True),
+        replace(VALUES, element=A, distinct=True),
         "values of a on the grid at which the boundaries between basins are followed to edge states; by default all",
         FOLLOWS,
     ),
@@ -172,7 +172,7 @@ EDGES = {
 }
 CATALOGUE = {
     "a": Field(
-        replace(VALUES, each=A, distinct=True),
+        replace(VALUES, element=A, distinct=True),
         "values of a on the grid with a catalogue of slip events; by default all",
         FOLLOWS,
     ),

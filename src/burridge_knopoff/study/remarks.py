@@ -16,10 +16,10 @@ def remarks(study: Study, config: Mapping[str, Any]) -> list[str]:
 
     config : the config as written
     """
-    return [*_on_cost(study), *_on_parts(study, config), *_on_states(study)]
+    return [*_cost_remarks(study), *_part_remarks(study, config), *_state_remarks(study)]
 
 
-def _on_cost(study: Study) -> list[str]:
+def _cost_remarks(study: Study) -> list[str]:
     """Return the cost of a run of the stiffest chain, if that is over a minute."""
     law, initial = study.laws[0], study.initial[0]
     chains = study.other_values[: 1 if study.has_one_chain else None]
@@ -31,14 +31,14 @@ def _on_cost(study: Study) -> list[str]:
     return [f"each simulation: {note}; the time estimated for a first run leaves this out"] if note else []
 
 
-def _on_parts(study: Study, config: Mapping[str, Any]) -> Iterator[str]:
+def _part_remarks(study: Study, config: Mapping[str, Any]) -> Iterator[str]:
     if study.blocks == 1:
         yield "one block: J = 0; no basins, phases or synchronized orbit, which need two end blocks"
     elif config.get("basins") and "basins" not in study.omitted_stages and not study.basin_maps:
         yield "basins: no map, since no default value of basins.a is on the grid; set basins.a"
 
 
-def _on_states(study: Study) -> Iterator[str]:
+def _state_remarks(study: Study) -> Iterator[str]:
     states = [study.state(name) for name in study.initial]
     yield from remarks_on_states(states, (name for name, values in study.parameters.items() if len(values) > 1))
     velocities: Iterable[float] = study.parameters.get("v", {"": study.config["v"]}).values()

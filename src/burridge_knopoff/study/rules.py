@@ -103,10 +103,10 @@ def fill_names(config: dict[str, Any]) -> None:
     Several(law_names).form(config["chains"].setdefault("laws", [first]), "chains.laws")
     OneOf(tuple(config["initial"])).form(config["basins"].setdefault("initial", state), "basins.initial")
     usual, by_law = (solver, {}) if isinstance(solver, str) else (SOLVERS[0], solver)
-    config["solver"] = _by_law(OneOf(SOLVERS), dict.fromkeys(laws, usual)).form(by_law, "solver")
+    config["solver"] = _law_keys(OneOf(SOLVERS), dict.fromkeys(laws, usual)).form(by_law, "solver")
 
 
-def _by_law(allowed: Range, usual: Mapping[str, Any]) -> Keys:
+def _law_keys(allowed: Range, usual: Mapping[str, Any]) -> Keys:
     """Return a range with one entry for each law, and the usual value of each as its default."""
     return Keys({law: Field(allowed, "", value) for law, value in usual.items()})
 
@@ -170,7 +170,7 @@ def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int,
     maps = {law: PAPER_BASINS.get(law, next(iter(PAPER_BASINS.values()))) for law in config["laws"]}
     usual = {law: [a for a in values if a in grid and blocks > 1] for law, values in maps.items()}
     basins, phases, solvers = (config[section] for section in ("basins", "phases", "solvers"))
-    chosen = _by_law(SOME_VALUES, usual).form(basins["a"], "basins.a")
+    chosen = _law_keys(SOME_VALUES, usual).form(basins["a"], "basins.a")
     basins["a"] = {law: list(values) for law, values in chosen.items()}
     phases["a"] = sorted(phases.get("a", [a for a in PAPER_PHASES if a in grid and of_paper]))
     solvers["a"] = sorted(solvers.get("a", [a for a in PAPER_COMPARED if a in grid] or [shown_a]))

@@ -17,7 +17,7 @@ from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.labels import UNDETERMINED, label
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.table import NOTHING, slot_values, slot_variables
-from burridge_knopoff.continuation.along_a import Continuation
+from burridge_knopoff.continuation.attractor_continuation import Continuation
 from burridge_knopoff.dataset.columns import empty_columns
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable

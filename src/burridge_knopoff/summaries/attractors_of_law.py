@@ -10,7 +10,7 @@ import xarray
 
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.stored_returns import returns_of_law
-from burridge_knopoff.continuation.along_a import continue_attractors
+from burridge_knopoff.continuation.attractor_continuation import continue_attractors
 from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.model.initial import initial_state
 from burridge_knopoff.provenance.keys import digest_of
@@ -31,7 +31,7 @@ def attractors_of_law(config: Mapping[str, Any], law: str, cores: int, cache: Pa
     settings, motion = SearchSettings(**config["attractors"]), motion_of(config)
     refine = RefinementSettings(**config["refine"])
     decides = {key: value for key, value in config.items() if key != "a"}
-    digest = digest_of(decides, source_fingerprint("burridge_knopoff.continuation.along_a"))
+    digest = digest_of(decides, source_fingerprint("burridge_knopoff.continuation.attractor_continuation"))
     folder = cache / f"attractors {law}" / digest
     continuation = continue_attractors(
         models, settings, motion, refine, starts=initial, start=start, processes=cores, folder=folder

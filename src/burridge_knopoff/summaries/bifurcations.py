@@ -40,7 +40,7 @@ PARTS = ("real", "imaginary")
 _AT, _ORBIT = ("bifurcation",), ("orbit",)
 
 
-def _of_bifurcation(value: Callable[[Bifurcation], Any]) -> Callable[[Entry], Any]:
+def _bifurcation_value(value: Callable[[Bifurcation], Any]) -> Callable[[Entry], Any]:
     """Return the values of a column for bifurcations located on an orbit; None for the others."""
     return lambda entry: value(entry.bifurcation) if entry.bifurcation else None
 
@@ -71,7 +71,7 @@ BIFURCATIONS = {
         _AT,
         "f8",
         "error of a: half the width of the interval that brackets it",
-        value=_of_bifurcation(lambda at: at.error),
+        value=_bifurcation_value(lambda at: at.error),
     ),
     "kind": Column(_AT, "i1", "kind of bifurcation", flag("i1", BifurcationKind), value=lambda entry: entry.kind),
     "change": Column(
@@ -93,38 +93,40 @@ BIFURCATIONS = {
     ),
     "motion_before": Column(_AT, "i1", "kind of motion at grid_low", _MOTION, value=lambda entry: entry.motion[0]),
     "motion_after": Column(_AT, "i1", "kind of motion at grid_high", _MOTION, value=lambda entry: entry.motion[1]),
-    "turns": Column(_AT, "i1", _TURNS, ANSWER, value=_of_bifurcation(lambda at: at.is_turning_point)),
-    "period": Column(_AT, "f8", "period of the orbit at the bifurcation", value=_of_bifurcation(lambda at: at.period)),
+    "turns": Column(_AT, "i1", _TURNS, ANSWER, value=_bifurcation_value(lambda at: at.is_turning_point)),
+    "period": Column(
+        _AT, "f8", "period of the orbit at the bifurcation", value=_bifurcation_value(lambda at: at.period)
+    ),
     "stops": Column(
         (*_AT, "block"),
         "i4",
         "stops in a period: of each block, in a period of the stable orbits",
-        value=_of_bifurcation(lambda at: at.before.orbit.stop_counts),
+        value=_bifurcation_value(lambda at: at.before.orbit.stop_counts),
     ),
     "stops_beyond": Column(
         (*_AT, "block"),
         "i4",
         "stops in a period beyond: of each block, in a period of the orbits beyond the bifurcation",
-        value=_of_bifurcation(lambda at: at.after.orbit.stop_counts if at.after else None),
+        value=_bifurcation_value(lambda at: at.after.orbit.stop_counts if at.after else None),
     ),
-    "multiplier": Column((*_AT, "part"), "f8", _LARGEST, value=_of_bifurcation(lambda at: _multiplier(at.at))),
+    "multiplier": Column((*_AT, "part"), "f8", _LARGEST, value=_bifurcation_value(lambda at: _multiplier(at.at))),
     "multiplier_beyond": Column(
         (*_AT, "part"),
         "f8",
         "largest multiplier beyond: Floquet multiplier of largest modulus of the orbits beyond the bifurcation",
-        value=_of_bifurcation(lambda at: _multiplier(at.after)),
+        value=_bifurcation_value(lambda at: _multiplier(at.after)),
     ),
     "mean_distance": Column(
         _AT,
         "f8",
         "<J> of the orbit: over a period of the orbit at the bifurcation",
-        value=_of_bifurcation(lambda at: at.mean_distance),
+        value=_bifurcation_value(lambda at: at.mean_distance),
     ),
     "stick_time": Column(
         _AT,
         "f8",
         "shortest stick: of the orbit at the bifurcation, 0 if its duration vanishes there",
-        value=_of_bifurcation(lambda at: at.stick_time),
+        value=_bifurcation_value(lambda at: at.stick_time),
     ),
     "lifetime_low": Column(_AT, "f8", _LIFE, value=lambda entry: entry.lifetime[0]),
     "lifetime_high": Column(_AT, "f8", _LONGER, value=lambda entry: entry.lifetime[1]),

@@ -8,7 +8,7 @@ import xarray
 
 from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
 from burridge_knopoff.attractors.stored_returns import KnownAttractors, known_attractors, returns_of_law
-from burridge_knopoff.continuation.along_a import continue_attractors
+from burridge_knopoff.continuation.attractor_continuation import continue_attractors
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.settings import MOTION, MotionSettings

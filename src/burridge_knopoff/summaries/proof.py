@@ -102,7 +102,7 @@ def summarize(models: Sequence[Model]) -> xarray.Dataset:
 
     Raises ProofError, one line, for a model that is not covered, and if a proof fails.
     """
-    proofs = [_of_law(model) for model in models]
+    proofs = [_law_values(model) for model in models]
     return summary(
         "Proved statements on the synchronized orbit of three blocks, as intervals that contain the true numbers",
         VARIABLES,
@@ -126,7 +126,7 @@ def summarize(models: Sequence[Model]) -> xarray.Dataset:
     )
 
 
-def _of_law(model: Model) -> dict[str, Any]:
+def _law_values(model: Model) -> dict[str, Any]:
     """Return the variables for one law; raises ProofError as `summarize` does."""
     if not is_covered(model):
         raise ProofError(f"law {model.law.name}: not covered: the paper's laws and chain of {CHAIN_BLOCKS} blocks")
@@ -142,7 +142,7 @@ def _of_law(model: Model) -> dict[str, Any]:
         _check_branch(attracting, critical, branch)
         between = RANGE[0][0] / RANGE[0][1], RANGE[1][0] / RANGE[1][1]
     _check(model, attracting, critical, branch)
-    rows = [_of_orbit(orbit, model) for orbit in (attracting, critical.orbit)]
+    rows = [_orbit_values(orbit, model) for orbit in (attracting, critical.orbit)]
     return {
         "critical_a": limits(critical.a),
         "critical_a_digits": digits(critical.a),
@@ -191,7 +191,7 @@ def _check(model: Model, attracting: ProvedOrbit, critical: CriticalOrbit, branc
         raise ProofError(f"a_c: got an interval of width {width(critical.a)!r}, expected below {LARGEST_WIDTH!r}")
 
 
-def _of_orbit(orbit: ProvedOrbit, model: Model) -> dict[str, Any]:
+def _orbit_values(orbit: ProvedOrbit, model: Model) -> dict[str, Any]:
     """Return the variables of one orbit; raises ProofError if its events differ from EVENTS."""
     names = [
         f"{('lateral', 'center')[arc.event_block]}_{'stop' if arc.slips[arc.event_block] else 'start'}"

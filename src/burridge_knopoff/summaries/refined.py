@@ -1,7 +1,7 @@
 """The attractors of each law at all values of a: those of the grid, and those inserted where the attractors change.
 
 Each law has its own values. The file has the variables of `attractors` over (law, value, attractor), and a over
-(law, value); see `continuation.along_a`.
+(law, value); see `continuation.attractor_continuation`.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import xarray
 from burridge_knopoff.attractors.lookup import CROSSINGS
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.table import slot_values, slot_variables
-from burridge_knopoff.continuation.along_a import Continuation
+from burridge_knopoff.continuation.attractor_continuation import Continuation
 from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable

@@ -8,7 +8,7 @@ import numpy as np
 import plotly.graph_objects as go
 import xarray
 
-from burridge_knopoff.figures.over_parameters import panel_parts, varied_parameters
+from burridge_knopoff.figures.parameter_panels import panel_parts, varied_parameters
 from burridge_knopoff.figures.style import cells
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.report.charts.look import axis, chart

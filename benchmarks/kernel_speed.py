@@ -1,6 +1,6 @@
 """Speed of this tree's kernel compared with that of another checkout: single runs, groups, labels of many states, laws.
 
-    python benchmarks/before.py ../before           # a checkout in which `make kernel` has been run
+    python benchmarks/kernel_speed.py ../before           # a checkout in which `make kernel` has been run
 
 Both are measured alternately, each in its own process; ratios are those of the smallest CPU times. To compare other
 vector widths compile both with `BURRIDGE_KNOPOFF_LANES=2`, 4 or 8.

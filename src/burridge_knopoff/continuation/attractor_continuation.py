@@ -66,8 +66,8 @@ class Continuation:
 
     def rows(self, place: int) -> list[Row]:
         """Return the attractors of one model as rows of the table, ordered by branch and side."""
-        known = self.attractors[place], self.lifetimes[place], self.branch[place].tolist(), self.side[place].tolist()
-        rows = [Row(index, *one) for index, one in enumerate(zip(*known, strict=True))]
+        columns = self.attractors[place], self.lifetimes[place], self.branch[place].tolist(), self.side[place].tolist()
+        rows = [Row(index, *values) for index, values in enumerate(zip(*columns, strict=True))]
         return sorted(rows, key=lambda row: (row.branch, -row.side))
 
 
@@ -92,33 +92,35 @@ def continue_attractors(
     Raises ValueError if an initial state does not fit the models.
     """
     matcher = Matcher(models[0].scale, refine.longest_period)
-    with parallel_map(processes, folder) as each:
+    with parallel_map(processes, folder) as pool:
         searches = [Search(model, settings, motion) for model in models]
         from_states = partial(_search, starts=starts, start=start)
-        searches = each("searched from initial states", from_states, searches, span=SEARCHED)
-        searches = _seed_neighbours(searches, each, matcher, [True] * len(searches))
+        searches = pool("searched from initial states", from_states, searches, span=SEARCHED)
+        searches = _seed_neighbours(searches, pool, matcher, [True] * len(searches))
         samples = [np.zeros(0, dtype=np.intc) for _ in searches]
         gained = [True] * len(searches)
         while any(gained):
-            known = [len(search.attractors) for search in searches]
-            those = [k for k, more in enumerate(gained) if more]
-            found = fraction_labels([searches[k] for k in those], start, each)
-            for k, search, labels in zip(those, *found, strict=True):
+            counts = [len(search.attractors) for search in searches]
+            places = [k for k, gain in enumerate(gained) if gain]
+            outcome = fraction_labels([searches[k] for k in places], start, pool)
+            for k, search, labels in zip(places, *outcome, strict=True):
                 searches[k], samples[k] = search, labels
             # Attractors to which only these states have led also seed the neighbours.
             seeded = _seed_neighbours(
                 searches,
-                each,
+                pool,
                 matcher,
-                [len(one.attractors) > count for one, count in zip(searches, known, strict=True)],
+                [len(search.attractors) > count for search, count in zip(searches, counts, strict=True)],
             )
-            gained = [_has_more_attractors(one, before) for one, before in zip(seeded, searches, strict=True)]
-            searches = [one if more else before for one, more, before in zip(seeded, gained, searches, strict=True)]
+            gained = [_has_more_attractors(search, before) for search, before in zip(seeded, searches, strict=True)]
+            searches = [
+                search if gain else before for search, gain, before in zip(seeded, gained, searches, strict=True)
+            ]
         # The sets of attractors are complete now; from here on they are only read.
-        upward = each("swept upward", _attractors_at_neighbour, searches[:-1], searches[1:])
-        downward = each("swept downward", _attractors_at_neighbour, searches[1:], searches[:-1])
+        upward = pool("swept upward", _attractors_at_neighbour, searches[:-1], searches[1:])
+        downward = pool("swept downward", _attractors_at_neighbour, searches[1:], searches[:-1])
         whole = [searches[0]]
-        inserted = refine_searches(searches, refine, matcher, each, INSERTED)
+        inserted = refine_searches(searches, refine, matcher, pool, INSERTED)
         for inner, grown in zip(inserted, searches[1:], strict=True):
             whole += [*inner, grown]
         attractors = [search.attractors for search in whole]
@@ -126,7 +128,7 @@ def continue_attractors(
         values = [search.model.a for search in whole]
         width = max((other.a - one.a for one, other in pairwise(models)), default=0.0)
         branch, side = branches(values, attractors, grid, REMEMBERED * width, matcher)
-        lives = _lifetimes_along_a(whole, branch, grid, each)
+        lives = _lifetimes_along_a(whole, branch, grid, pool)
     # Nothing follows at the ends of the grid.
     first, last = (np.full(len(search.attractors), UNDETERMINED) for search in (searches[0], searches[-1]))
     return Continuation(
@@ -153,7 +155,7 @@ def _has_more_attractors(search: Search, before: Search) -> bool:
 
 
 def _seed_neighbours(
-    searches: Sequence[Search], each: ParallelMap, matcher: Matcher, new: Sequence[bool]
+    searches: Sequence[Search], pool: ParallelMap, matcher: Matcher, new: Sequence[bool]
 ) -> list[Search]:
     """Start each attractor, downward and upward, at the neighbouring a where it has no unchanged counterpart.
 
@@ -163,26 +165,26 @@ def _seed_neighbours(
     for way in ("down", "up"):
         before, new = searches[::-1], new[::-1]
         sources = [k for k in range(len(before) - 1) if new[k]]
-        handed = each(
+        handed = pool(
             f"seeded {way}ward",
             partial(_seeded_search, matcher=matcher),
             [before[k] for k in sources],
             [before[k + 1] for k in sources],
         )
-        given = dict(zip(sources, handed, strict=True))
+        seeded = dict(zip(sources, handed, strict=True))
         searches = [before[0]]
         for k, (source, target) in enumerate(pairwise(before)):
             # An attractor that has just been found at the source is continued as well.
-            more = _has_more_attractors(searches[-1], source)
-            searches.append((_seeded_search(searches[-1], target, matcher) if more else given.get(k)) or target)
-        new = [known or _has_more_attractors(*pair) for known, *pair in zip(new, searches, before, strict=True)]
+            gain = _has_more_attractors(searches[-1], source)
+            searches.append((_seeded_search(searches[-1], target, matcher) if gain else seeded.get(k)) or target)
+        new = [flag or _has_more_attractors(*pair) for flag, *pair in zip(new, searches, before, strict=True)]
     return searches
 
 
 def _seeded_search(source: Search, target: Search, matcher: Matcher) -> Search | None:
     """Return the target after a search from the attractors of the source that it lacks; None if it lacks none."""
-    known, shown = (outlines(search.attractors) for search in (source, target))
-    lacking, _ = matcher.unmatched(known, shown)
+    source_outlines, target_outlines = (outlines(search.attractors) for search in (source, target))
+    lacking, _ = matcher.unmatched(source_outlines, target_outlines)
     if not lacking:
         return None
     # Earlier unsuccessful states do not count against the seeds.
@@ -197,7 +199,7 @@ def _attractors_at_neighbour(source: Search, target: Search) -> np.ndarray:
 
 
 def _lifetimes_along_a(
-    searches: Sequence[Search], branch: Sequence[np.ndarray], grid: Sequence[int], each: ParallelMap
+    searches: Sequence[Search], branch: Sequence[np.ndarray], grid: Sequence[int], pool: ParallelMap
 ) -> list[list[Lifetime | None]]:
     """Return the lifetimes at all values of a; see `Continuation`.
 
@@ -210,15 +212,15 @@ def _lifetimes_along_a(
     ]
     inserted = set(range(len(searches))) - set(grid)
     inner = {k for k in inserted if chaotic[k] <= chaotic[k - 1] & chaotic[k + 1]}
-    known: dict[int, list[Lifetime | None]] = {}
-    wanted = sorted(set(range(len(searches))) - inner)
-    while wanted:
-        lives = each("lifetimes", _lifetimes, [searches[k] for k in wanted], span=LIFETIMES)
-        known |= zip(wanted, lives, strict=True)
+    measured: dict[int, list[Lifetime | None]] = {}
+    places = sorted(set(range(len(searches))) - inner)
+    while places:
+        lives = pool("lifetimes", _lifetimes, [searches[k] for k in places], span=LIFETIMES)
+        measured |= zip(places, lives, strict=True)
         least = searches[0].settings.lifetime
-        short = {k for k, lives in known.items() if any(life and not life.is_longer_than(least) for life in lives)}
-        wanted = sorted(k for k in inner - known.keys() if not short.isdisjoint((k - 1, k + 1)))
-    return [known.get(k, [None] * len(search.attractors)) for k, search in enumerate(searches)]
+        short = {k for k, lives in measured.items() if any(life and not life.is_longer_than(least) for life in lives)}
+        places = sorted(k for k in inner - measured.keys() if not short.isdisjoint((k - 1, k + 1)))
+    return [measured.get(k, [None] * len(search.attractors)) for k, search in enumerate(searches)]
 
 
 def _lifetimes(search: Search) -> list[Lifetime | None]:

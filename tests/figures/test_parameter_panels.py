@@ -6,8 +6,8 @@ import xarray as xr
 from matplotlib.colors import to_rgb
 
 from burridge_knopoff.figures import grid_distance, grid_exponents, grid_kinds
-from burridge_knopoff.figures.over_parameters import MOST
 from burridge_knopoff.figures.palette import KINDS
+from burridge_knopoff.figures.parameter_panels import MOST
 from burridge_knopoff.figures.style import write_figure
 
 

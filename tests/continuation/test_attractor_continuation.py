@@ -9,8 +9,8 @@ import pytest
 from burridge_knopoff import Chain, Model, SearchSettings, law_of
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.basins import fractions
-from burridge_knopoff.continuation import along_a as continuation
-from burridge_knopoff.continuation.along_a import continue_attractors
+from burridge_knopoff.continuation import attractor_continuation as continuation
+from burridge_knopoff.continuation.attractor_continuation import continue_attractors
 from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MOTION
@@ -41,10 +41,10 @@ def scripted(monkeypatch):
                 self.attractors = [at(STILL), at(OTHER, partner=1)]
 
         def known_labels(self, starts):
-            known = {round(item.motion.returns[0, 1]): k for k, item in enumerate(self.attractors)}
-            return np.array([known.get(round(start.position[1]), -1) for start in starts])
+            places = {round(item.motion.returns[0, 1]): k for k, item in enumerate(self.attractors)}
+            return np.array([places.get(round(start.position[1]), -1) for start in starts])
 
-    def labels(searches, start, each):
+    def labels(searches, start, pool):
         return searches, [np.full(7, len(search.attractors)) for search in searches]
 
     monkeypatch.setattr(continuation, "Search", Scripted)
@@ -54,22 +54,22 @@ def scripted(monkeypatch):
 
 def test_attractors_at_one_value_seed_the_others(scripted):
     """They do so downward and upward as far as they exist; attractors known at both values are not followed again."""
-    found = continue_attractors(models(), refine=RefinementSettings(1.0))
+    whole = continue_attractors(models(), refine=RefinementSettings(1.0))
     assert scripted == [(0.1, [OTHER]), (0.3, [OTHER]), (0.4, [OTHER])]
-    assert [len(here) for here in found.attractors] == [2, 2, 2, 1]
-    assert [branch.tolist() for branch in found.branch] == [[1, 2], [1, 2], [1, 2], [1]]
-    assert [index.tolist() for index in found.upward] == [[0, 1], [0, 1], [0, -1], [-1]]
-    assert [index.tolist() for index in found.downward] == [[-1, -1], [0, 1], [0, 1], [0]]
-    assert [labels.tolist() for labels in found.samples] == [[2] * 7] * 3 + [[1] * 7]
-    assert found.grid == [0, 1, 2, 3]
+    assert [len(attractors) for attractors in whole.attractors] == [2, 2, 2, 1]
+    assert [branch.tolist() for branch in whole.branch] == [[1, 2], [1, 2], [1, 2], [1]]
+    assert [index.tolist() for index in whole.upward] == [[0, 1], [0, 1], [0, -1], [-1]]
+    assert [index.tolist() for index in whole.downward] == [[-1, -1], [0, 1], [0, 1], [0]]
+    assert [labels.tolist() for labels in whole.samples] == [[2] * 7] * 3 + [[1] * 7]
+    assert whole.grid == [0, 1, 2, 3]
 
 
 def test_a_branch_is_remembered_over_two_of_the_widest_steps(scripted, monkeypatch):
     """So no branch ends only because the grid is coarser."""
-    asked, branches = [], continuation.branches
-    monkeypatch.setattr(continuation, "branches", lambda *given: asked.append(given) or branches(*given))
+    calls, branches = [], continuation.branches
+    monkeypatch.setattr(continuation, "branches", lambda *arguments: calls.append(arguments) or branches(*arguments))
     continue_attractors(models((0.1, 0.2, 0.5, 0.55)), refine=RefinementSettings(1.0))
-    ((_, _, _, reach, *_),) = asked
+    ((_, _, _, reach, *_),) = calls
     assert reach == pytest.approx(0.6)
 
 
@@ -92,10 +92,12 @@ def same(one, other):
 def test_attractors_found_only_in_basin_sampling_seed_the_others():
     """Synchrony loses stability between these two values; the antiphase orbit exists at both."""
     settings = SearchSettings(samples=6, fraction_width=0.2)
-    found = continue_attractors(models((0.0862, 0.09)), settings, refine=RefinementSettings(1.0))
-    means = [sorted(round(one.motion.mean_distance, 2) for one in here) for here in found.attractors]
+    whole = continue_attractors(models((0.0862, 0.09)), settings, refine=RefinementSettings(1.0))
+    means = [
+        sorted(round(attractor.motion.mean_distance, 2) for attractor in attractors) for attractors in whole.attractors
+    ]
     assert means == [[0.0, 0.14, 0.19], [0.02, 0.02, 0.14, 0.19]]
-    assert 2 not in found.samples[0]
+    assert 2 not in whole.samples[0]
 
 
 def test_results_do_not_depend_on_processes_or_the_cache(tmp_path, monkeypatch, caplog):
@@ -103,20 +105,20 @@ def test_results_do_not_depend_on_processes_or_the_cache(tmp_path, monkeypatch, 
     monkeypatch.setattr(fractions, "LABELLED_AT_ONCE", 30)
     settings = SearchSettings(samples=10, fraction_width=0.13, transient=1000.0, window=800.0, perturbations=4)
 
-    def found(a_values, **share):
+    def continued(a_values, **share):
         states = list(PAPER_STATES.values())
         return continue_attractors(models(a_values), settings, MOTION, RefinementSettings(0.01), starts=states, **share)
 
-    found((0.06, 0.1), processes=2, folder=tmp_path)
+    continued((0.06, 0.1), processes=2, folder=tmp_path)
     caplog.set_level(logging.INFO)
-    one, *others = (
-        found((0.06, 0.09, 0.1), **share)
+    first, *repeated = (
+        continued((0.06, 0.09, 0.1), **share)
         for share in ({}, {"processes": 2}, {"folder": tmp_path}, {"processes": 2, "folder": tmp_path})
     )
-    assert len(one.models) > 3
-    for two in others:
-        for item in fields(one):
-            same(getattr(one, item.name), getattr(two, item.name))
+    assert len(first.models) > 3
+    for second in repeated:
+        for item in fields(first):
+            same(getattr(first, item.name), getattr(second, item.name))
     lines = [line for line in caplog.messages if line.startswith("searched from initial states")]
     assert [line.partition("; ")[2] for line in lines] == ["", "", *(f"{n} from the cache" for n in (2, 3))]
     # The cache has one file for each gap of the grid.
