@@ -97,7 +97,7 @@ class Mutant:
 def sample(rooms: list[str], count: int, seed: int) -> list[Mutant]:
     """Return changes at places drawn at random, of a kind drawn at random, no two at one place."""
     paths = [
-        path for room in rooms for path in (ROOT / PACKAGE / room).iterdir() if path.suffix in (".py", ".cpp", ".h")
+        path for room in rooms for path in (ROOT / PACKAGE / room).rglob("*") if path.suffix in (".py", ".cpp", ".h")
     ]
     places = sorted({place for path in paths for place in spots(path)})
     generator = random.Random(seed)
@@ -181,7 +181,7 @@ def bare(text: str) -> str:
 
 def tests_of(file: str) -> list[str]:
     """Return the tests of a changed file, those of the file itself first."""
-    room, name = file.split("/")
+    room, *_, name = file.split("/")
     wanted = [f"{room}/test_{Path(name).stem}.py", room, *TESTS.get(room, ())]
     return [f"tests/{test}" for test in wanted if (ROOT / "tests" / test).exists()]
 
