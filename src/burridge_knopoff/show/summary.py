@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import xarray
 
-from burridge_knopoff import summaries
 from burridge_knopoff.provenance.sources import PACKAGE
 from burridge_knopoff.show.attractors import attractor_table, branches
 from burridge_knopoff.show.formatting import describe_values, wrap_lines
@@ -71,8 +70,8 @@ def digest(result: Result, width: int = UNLIMITED) -> list[str]:
         if result.name == "attractors":
             is_single = data.sizes["a"] == data.sizes["law"] == 1 and "branch_name" in data
             return attractor_table(data, {}, width) if is_single else branches(data, width)
-        own = f"{summaries.__name__}.{result.name}"
-        module = import_module(own if find_spec(own) else data.attrs["source_module"])
+        name = f"burridge_knopoff.summaries.{result.name}"
+        module = import_module(name if find_spec(name) else data.attrs["source_module"])
         return wrap_lines(module.digest(data).rstrip().splitlines(), width)
     except (ImportError, AttributeError, KeyError, ValueError, IndexError):
         # Made by other sources, or only a part of the summary.

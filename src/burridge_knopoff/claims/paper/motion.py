@@ -107,8 +107,9 @@ def not_differentiable_at_events(evidence: Evidence, *, a: Range = POSITIVE, loo
         Measured("smallest jump of U''' where a block starts", smallest["start_jump"]),
     ]
     reason = (
-        f"U'' jumps at every stop, by at least {smallest['stop_jump']:.2g}, and U''' at every start, by at least "
-        f"{smallest['start_jump']:.2g}, at {share} of the values of a with {a}. U'' is continuous at a start."
+        f"Among the events that are stored with states, U'' jumps at every stop, by at least "
+        f"{smallest['stop_jump']:.2g}, and U''' at every start, by at least {smallest['start_jump']:.2g}, at {share} "
+        f"of the values of a with {a}. U'' is continuous at a start."
     )
     return share.conclude(reason, measured, "no jump at some event")
 
