@@ -36,11 +36,11 @@ def truths(draw: st.DrawFn, values: int = 12) -> Truth:
 @given(truths())
 def test_a_share_counts_the_known_values_to_which_the_statement_applies(truth: Truth) -> None:
     cases = {case.name: case for case in truth.cases()}
-    names = [LAWS if "law" in truth.known.dims else ("",), STATES if "initial" in truth.known.dims else ("",)]
+    names = [LAWS if "law" in truth.is_known.dims else ("",), STATES if "initial" in truth.is_known.dims else ("",)]
     assert list(cases) == [", ".join(part for part in pair if part) for pair in product(*names)]
     for law, initial in product(*names):
         place = {key: label for key, label in (("law", law), ("initial", initial)) if label}
-        right, known, applies = (part.sel(place).values for part in (truth.right, truth.known, truth.applies))
+        right, known, applies = (part.sel(place).values for part in (truth.is_true, truth.is_known, truth.applies))
         count = [bool(r) for r, k, b in zip(right, known, applies, strict=True) if k and b]
         assert cases[", ".join(place.values())].share == Share(sum(count), len(count))
 
@@ -48,7 +48,7 @@ def test_a_share_counts_the_known_values_to_which_the_statement_applies(truth: T
 @given(truths(values=8))
 def test_a_verdict_is_open_if_what_is_unknown_could_change_it(truth: Truth) -> None:
     for case in truth.cases():
-        unknown = int(np.count_nonzero(~case.known & case.applies))
+        unknown = int(np.count_nonzero(~case.is_known & case.applies))
         completed = (
             {
                 judge_share(Share(case.share.hits + more, case.share.count + unknown), LOOSE)
@@ -70,8 +70,8 @@ def test_a_verdict_is_open_if_what_is_unknown_could_change_it(truth: Truth) -> N
 @given(truths())
 def test_exceptions_name_every_value_at_which_the_statement_is_false(truth: Truth) -> None:
     for case in truth.cases():
-        wrong = case.known & case.applies & ~case.right
+        wrong = case.is_known & case.applies & ~case.is_true
         texts = case.exceptions("false", "unknown")
         assert any(text.startswith("false at ") for text in texts) == wrong.any()
-        assert any(text.startswith("unknown at ") for text in texts) == (~case.known & case.applies).any()
+        assert any(text.startswith("unknown at ") for text in texts) == (~case.is_known & case.applies).any()
         assert all(text.endswith(f" ({case.name})") == bool(case.name) for text in texts)

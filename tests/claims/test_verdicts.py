@@ -10,7 +10,7 @@ import xarray
 from scipy.integrate import solve_ivp
 
 from burridge_knopoff import Chain, InitialState, Model, law_of
-from burridge_knopoff.attractors.lookup import reached_values
+from burridge_knopoff.attractors.lookup import reached_slots
 from burridge_knopoff.claims.conventions import combine_readings, judge_conventions
 from burridge_knopoff.claims.equations import equation_difference
 from burridge_knopoff.claims.ledger import judge
@@ -97,7 +97,7 @@ def test_under_another_contact_than_the_papers_every_convention_counts() -> None
 
 def test_the_attractor_that_is_reached_is_known_by_branch_and_side() -> None:
     slots = ("law", "a", "attractor")
-    found = xarray.Dataset(
+    attractors = xarray.Dataset(
         {
             "branch": (slots, [[[0, 2, 2], [0, 2, 2], [0, -1, -1], [0, 1, -1]]]),
             "side": (slots, [[[0, 1, -1], [0, 1, -1], [0, 0, 0], [0, 0, 0]]]),
@@ -107,9 +107,9 @@ def test_the_attractor_that_is_reached_is_known_by_branch_and_side() -> None:
         },
         {"law": ["linearized"], "initial": ["plus"]},
     )
-    known, values = reached_values(found, "plus", "linearized", "value")
-    assert known.tolist() == [True, True, False, False]
-    assert values[known].tolist() == [2.0, 3.0]
+    is_known, slot = reached_slots(attractors)
+    assert is_known.sel(law="linearized", initial="plus").values.tolist() == [True, True, False, False]
+    assert attractors["value"].isel(attractor=slot).values[is_known.values].tolist() == [2.0, 3.0]
     assert judge_shares({}, 0.9) == ("", "")
 
 

@@ -42,28 +42,6 @@ def largest_basin_fraction(attractors: xarray.Dataset, branch: int) -> tuple[flo
     return float(fraction[largest]), float(attractors["a"].values[there][largest])
 
 
-def reached_values(attractors: xarray.Dataset, initial: str, law: str, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return (known, values) of a variable on the attractors that an initial state reaches.
-
-    attractors : at all a, under one convention
-    known : shape (a,); False where the attractor is undetermined, and the value is meaningless
-    values : shape (a, …)
-    """
-    # Indexing variables is faster than indexing the Dataset; the claims call this a thousand times.
-    chosen = {"law": law, "initial": initial}
-    place = {
-        dimension: attractors[dimension].values.tolist().index(coordinate) for dimension, coordinate in chosen.items()
-    }
-
-    def of(variable: str) -> np.ndarray:
-        array = attractors.variables[variable]
-        return array.isel({dimension: k for dimension, k in place.items() if dimension in array.dims}).values
-
-    branch = of("branch")
-    slots = (branch == of("initial_branch")[:, None]) & (of("side") == of("initial_side")[:, None]) & (branch >= 0)
-    return slots.any(axis=1), of(name)[np.arange(len(slots)), slots.argmax(axis=1)]
-
-
 def reached_attractors(attractors: xarray.Dataset) -> xarray.Dataset:
     """Return mean_distance, its error, kind and period of the attractors that the initial states of a study reach.
 
@@ -82,7 +60,7 @@ def reached_attractors(attractors: xarray.Dataset) -> xarray.Dataset:
 def reached_slots(attractors: xarray.Dataset) -> tuple[xarray.DataArray, xarray.DataArray]:
     """Return whether the attractor that an initial state reaches is known, and its slot, over (law, initial, a).
 
-    attractors : under one convention
+    attractors : under one convention; a part of them, for one law, state or a, gives results without this dimension
     """
     slots = (attractors["branch"] == attractors["initial_branch"]) & (attractors["side"] == attractors["initial_side"])
     slots &= attractors["branch"] >= 0

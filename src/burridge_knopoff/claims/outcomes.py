@@ -63,12 +63,12 @@ class Reached:
     initial: Sequence[str]
 
     def of(self, name: str) -> xarray.DataArray:
-        """Return a variable of the attractors; meaningless where `known` is false."""
+        """Return a variable of the attractors; meaningless where `is_known` is false."""
         _, slot = self._slots
         return self.attractors[name].isel(attractor=slot)
 
     @property
-    def known(self) -> xarray.DataArray:
+    def is_known(self) -> xarray.DataArray:
         """Whether the attractor is known."""
         return self._slots[0]
 
@@ -80,7 +80,7 @@ class Reached:
     @property
     def kind(self) -> xarray.DataArray:
         """Kind of motion on the attractor; all chaos is one kind."""
-        return xarray.where(self.known, xarray.apply_ufunc(merge_chaos, self.of("kind")), MotionKind.UNDETERMINED)
+        return xarray.where(self.is_known, xarray.apply_ufunc(merge_chaos, self.of("kind")), MotionKind.UNDETERMINED)
 
     @property
     def synchronized(self) -> xarray.DataArray:
@@ -91,8 +91,10 @@ class Reached:
     def section(self) -> xarray.Dataset:
         """Number of section points, and mean W' of them; NaN where they are not known."""
         count = self.of("section_count")
-        known = self.known & (count >= 0)
-        return xarray.Dataset({"count": count.where(known), "mean": self.of("section_velocity_mean").where(known)})
+        is_known = self.is_known & (count >= 0)
+        return xarray.Dataset(
+            {"count": count.where(is_known), "mean": self.of("section_velocity_mean").where(is_known)}
+        )
 
     @property
     def _slots(self) -> tuple[xarray.DataArray, xarray.DataArray]:
@@ -109,6 +111,6 @@ def reached_attractor(
 
     attractors : under one convention
     """
-    known, slot = (part.sel(a=at, initial=initial, law=law).item() for part in reached_slots(attractors))
-    attractor = attractors.sel(a=at, law=law).isel(attractor=slot)
-    return tuple(attractor[name].values for name in names) if known else None
+    slots = attractors.sel(a=at, initial=initial, law=law)
+    is_known, slot = (part.item() for part in reached_slots(slots))
+    return tuple(slots[name].isel(attractor=slot).values for name in names) if is_known else None

@@ -35,12 +35,12 @@ from burridge_knopoff.study.formatting import format_values
 class Truth:
     """Where a statement is true, over a and perhaps law and initial.
 
-    right : meaningless where it is not known; known : where it is known
+    is_true : meaningless where that is not known; is_known : where it is known
     applies : values that the statement is about
     """
 
-    right: xarray.DataArray
-    known: xarray.DataArray
+    is_true: xarray.DataArray
+    is_known: xarray.DataArray
     applies: xarray.DataArray | bool = True
 
     def cases(self, unknown: str = "") -> Iterator[Case]:
@@ -48,15 +48,15 @@ class Truth:
 
         unknown : reason not to judge, in which {law}, {initial} and {where}, the values of a, are filled in
         """
-        applies = self.applies if isinstance(self.applies, xarray.DataArray) else xarray.ones_like(self.known, bool)
-        parts = xarray.broadcast(self.right.astype(bool), self.known.astype(bool), applies.astype(bool))
+        applies = self.applies if isinstance(self.applies, xarray.DataArray) else xarray.ones_like(self.is_known, bool)
+        parts = xarray.broadcast(self.is_true.astype(bool), self.is_known.astype(bool), applies.astype(bool))
         dimensions = [name for name in ("law", "initial") if name in parts[0].dims]
         for labels in product(*(parts[0][name].values.tolist() for name in dimensions)):
             place = dict(zip(dimensions, labels, strict=True))
-            right, known, about = (part.sel(place).values for part in parts)
+            is_true, is_known, about = (part.sel(place).values for part in parts)
             grid = parts[0]["a"].values
-            reason = unknown.format(**place, where=format_values(grid, ~known & about))
-            yield Case(", ".join(labels), grid, right, known, reason, about)
+            reason = unknown.format(**place, where=format_values(grid, ~is_known & about))
+            yield Case(", ".join(labels), grid, is_true, is_known, reason, about)
 
 
 @dataclass(frozen=True)
@@ -65,34 +65,34 @@ class Case:
 
     name : of the case, «linearized, plus»; empty if it is the only one
     a : ascending
-    right : whether the statement is true; meaningless where that is not known
-    known : whether that is known
+    is_true : whether the statement is true; meaningless where that is not known
+    is_known : whether that is known
     unknown : the reason not to judge if the values that are not known decide
     applies : values of a that the statement is about; all by default
     """
 
     name: str
     a: np.ndarray
-    right: np.ndarray
-    known: np.ndarray
+    is_true: np.ndarray
+    is_known: np.ndarray
     unknown: str = ""
     applies: np.ndarray | bool = True
 
     @property
     def share(self) -> Share:
         """The fraction of the known values at which the statement is true."""
-        known = self.known & self.applies
-        return Share(int(np.count_nonzero(self.right & known)), int(np.count_nonzero(known)))
+        counted = self.is_known & self.applies
+        return Share(int(np.count_nonzero(self.is_true & counted)), int(np.count_nonzero(counted)))
 
     def is_decided(self, loose: float) -> bool:
         """Return whether the verdict does not depend on the values that are not known; False if none is known."""
-        share, unknown = self.share, int(np.count_nonzero(~self.known & self.applies))
+        share, unknown = self.share, int(np.count_nonzero(~self.is_known & self.applies))
         return share.count > 0 and share_is_decided(share.hits, share.hits + unknown, share.count + unknown, loose)
 
     def exceptions(self, wrong: str, unknown: str = "") -> list[str]:
         """Describe where the statement is false and, if there are words for it, where that is not known."""
-        texts = describe_where(wrong, self.a, self.known & ~self.right & self.applies, self.name)
-        return texts + (describe_where(unknown, self.a, ~self.known & self.applies, self.name) if unknown else [])
+        texts = describe_where(wrong, self.a, self.is_known & ~self.is_true & self.applies, self.name)
+        return texts + (describe_where(unknown, self.a, ~self.is_known & self.applies, self.name) if unknown else [])
 
 
 @dataclass(frozen=True)
@@ -153,7 +153,7 @@ class Statement:
         wrong, unknown : words for where the statement is false, and where that is not known; further : other exceptions
         verdict : if it is not that of the shares
         """
-        exceptions = [*(self.exceptions(wrong, unknown)), *further]
+        exceptions = [*self.exceptions(wrong, unknown), *further]
         verdict = verdict or self.verdict
         if self.under is None:
             return Verdict(verdict, reason, measured, "; ".join(exceptions))

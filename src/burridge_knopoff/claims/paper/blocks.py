@@ -40,7 +40,7 @@ def two_blocks_agree(evidence: Evidence, *, a: Range = TWO_BLOCKS, loose_share: 
         of_states = float((agrees == Answer.YES).where(agrees != Answer.UNDETERMINED).mean())
         measured.append(Measured(f"share of a at which the laws agree {reading} from all states", share.share.value))
         measured.append(Measured(f"share of states and a at which they agree {reading}", of_states))
-        wrong = cases[0].a[cases[0].known & ~cases[0].right]
+        wrong = cases[0].a[cases[0].is_known & ~cases[0].is_true]
         if len(wrong):
             measured.append(Measured(f"smallest a at which they disagree {reading}", wrong[0]))
             measured.append(Measured(f"largest a at which they disagree {reading}", wrong[-1]))
@@ -54,8 +54,8 @@ def two_blocks_agree(evidence: Evidence, *, a: Range = TWO_BLOCKS, loose_share: 
         nearest = float(margin.min())
         measured.append(Measured("smallest distance of Δ⟨J⟩ from the tolerance where it decides, in errors", nearest))
     both_pulled = _agreement_of_states(both["agrees"].sel(chain="both_pulled"))
-    if both_pulled.known.any():
-        of_other = float(both_pulled.right.where(both_pulled.known).mean())
+    if both_pulled.is_known.any():
+        of_other = float(both_pulled.is_true.where(both_pulled.is_known).mean())
         measured.append(Measured("the first share if both blocks are pulled, which is not the paper's chain", of_other))
     reason = (
         f"In the train model, which is pulled at its first block only, the laws agree for all {pairs.sizes['state']} "

@@ -82,8 +82,8 @@ def _coexisting(attractors: xarray.Dataset, samples: int) -> tuple[np.ndarray, n
     branch, kind = attractors["branch"].values.tolist(), merge_chaos(attractors["kind"].values).tolist()
     kind_of_branch = [dict(zip(*slots, strict=True)) for slots in zip(branch, kind, strict=True)]
     kinds = [
-        {known[number] for number in branches & known.keys()} - {MotionKind.UNDETERMINED}
-        for branches, known in zip(coexisting, kind_of_branch, strict=True)
+        {kind_of[number] for number in branches & kind_of.keys()} - {MotionKind.UNDETERMINED}
+        for branches, kind_of in zip(coexisting, kind_of_branch, strict=True)
     ]
     if ((count < 2) & (attractors["basin_count"].values.sum(axis=1) < samples)).any():
         raise NotTestableError(f"fewer than {samples} sampled states reach an attractor where one alone is seen")
@@ -95,10 +95,7 @@ def _coexisting(attractors: xarray.Dataset, samples: int) -> tuple[np.ndarray, n
     "mean_distance",
     "mean_distance",
     "attractors",
-    depends_on=(
-        "minus_synchronizes",
-        "plus_does_not_synchronize",
-    ),
+    depends_on=("minus_synchronizes", "plus_does_not_synchronize"),
 )
 def first_block_decides(
     evidence: Evidence,
@@ -130,10 +127,7 @@ def first_block_decides(
     "mean_distance",
     "mean_distance",
     "attractors",
-    depends_on=(
-        "minus_synchronizes",
-        "plus_does_not_synchronize",
-    ),
+    depends_on=("minus_synchronizes", "plus_does_not_synchronize"),
 )
 def same_for_both_laws(
     evidence: Evidence,

@@ -128,10 +128,7 @@ def minus_periodic(
     "lyapunov",
     "agreement",
     "attractors",
-    depends_on=(
-        "minus_synchronizes",
-        "minus_periodic",
-    ),
+    depends_on=("minus_synchronizes", "minus_periodic"),
 )
 def periodic_is_synchronized(
     evidence: Evidence,
@@ -181,10 +178,7 @@ def periodic_is_synchronized(
     "refined",
     "agreement",
     "orbits",
-    depends_on=(
-        "regular_below",
-        "chaotic_above",
-    ),
+    depends_on=("regular_below", "chaotic_above"),
 )
 def transition(
     evidence: Evidence,

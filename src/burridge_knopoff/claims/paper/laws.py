@@ -112,10 +112,10 @@ def _judge_agreement(
     for reading, agrees in readings.items():
         truth = Truth(agrees == Answer.YES, agrees.isin((Answer.YES, Answer.NO)))
         cases = list(truth.cases())
-        states = Statement(evidence, [case for case in cases if case.known.any()], loose_share)
-        unknown = [text for case in cases for text in describe_where("undetermined", case.a, ~case.known, case.name)]
+        states = Statement(evidence, [case for case in cases if case.is_known.any()], loose_share)
+        unknown = [text for case in cases for text in describe_where("undetermined", case.a, ~case.is_known, case.name)]
         grid = np.tile(agrees["a"].values, agrees.sizes["initial"])
-        right, known = (part.transpose("initial", "a").values.ravel() for part in (truth.right, truth.known))
+        right, known = (part.transpose("initial", "a").values.ravel() for part in (truth.is_true, truth.is_known))
         points = Case("points", grid, right, known, f"the laws could not be compared: {'; '.join(unknown)}")
         share = decided(Statement(evidence, [points], loose_share)).share
         verdicts[reading] = judge_share(share, loose_share)
@@ -127,7 +127,7 @@ def _judge_agreement(
 
 def _parting(reading: str, case: Case) -> Iterator[Measured]:
     """Yield the smallest a at which the laws differ."""
-    if len(differ := case.a[case.known & ~case.right]):
+    if len(differ := case.a[case.is_known & ~case.is_true]):
         yield Measured(f"smallest a at which they differ, {reading}, {case.name}", float(differ[0]))
 
 

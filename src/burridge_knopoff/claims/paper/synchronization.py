@@ -47,7 +47,7 @@ def _synchronizes(evidence: Evidence, initial: str, a: Range, loose_share: float
     mean = Runs(evidence, [initial], a).of("mean_distance", "mean_distance").isel(initial=0)
 
     def extreme(case: Case) -> Iterator[Measured]:
-        values = mean.sel(law=case.name).values[case.right]
+        values = mean.sel(law=case.name).values[case.is_true]
         if len(values):
             value, name = (values.max(), "largest") if synchronized else (values.min(), "smallest")
             yield Measured(f"{name} ⟨J⟩ there, {case.name}", float(value))
