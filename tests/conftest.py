@@ -13,15 +13,26 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import fcntl
 import pickle
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import settings
 
 settings.register_profile("study", deadline=None, derandomize=True, print_blob=True)
 settings.load_profile("study")
+
+
+#: Fixtures for which the real Snakefile runs a study with attractors, or to its end.
+STUDIES = {"finished", "limited", "small_studies", "poor", "plane"}
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Mark the tests that need such a study as slow; others run the Snakefile for some files or plan its jobs."""
+    if not STUDIES.isdisjoint(item.fixturenames):
+        item.add_marker(pytest.mark.slow)
 
 
 @pytest.hookimpl(trylast=True)
@@ -42,6 +53,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         groups[is_of.index(True)].append(item)
     half = max(0, len(items) // 2 - len(slurm))
     items[:] = [*slurm, *short[:half], *slow, *workflow, *short[half:]]
+
+
+def some(cases: Iterable[Any], count: int) -> list[Any]:
+    """Return cases of a test as parameters, all except the first few marked as slow: they take the same path."""
+    values = [case if isinstance(case, tuple) else (case,) for case in cases]
+    return [pytest.param(*case, marks=pytest.mark.slow if n >= count else ()) for n, case in enumerate(values)]
 
 
 @pytest.fixture(scope="session")
@@ -80,9 +97,12 @@ def finished(tmp_path_factory: pytest.TempPathFactory):
 
 
 @pytest.fixture(scope="session")
-def small_studies(tmp_path_factory: pytest.TempPathFactory):
-    """Return small studies by their names in `tests.small_study`, with all summaries, each made once."""
-    from tests.small_study import SMALL, STUDIES, run_study
+def small_studies(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest):
+    """Return small studies by their names in `tests.small_study`, with all summaries, each made once.
+
+    "paper" is the finished study.
+    """
+    from tests.small_study import SMALL, STUDIES, opened, run_study
 
     def make(name: str, folder: Path) -> None:
         small = run_study(folder / "results" / name, {**SMALL, "study": name, **STUDIES[name]}, ("summary",))
@@ -91,6 +111,8 @@ def small_studies(tmp_path_factory: pytest.TempPathFactory):
 
     @cache
     def small_study(name: str):
+        if name == "paper":
+            return opened(request.getfixturevalue("finished").folder / "results/tiny")
         folder = made_once(tmp_path_factory, name, lambda folder: make(name, folder))
         return pickle.loads((folder / "study.pickle").read_bytes())
 

@@ -9,13 +9,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import pytest
 import xarray
 
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.record import read_study_record, write_study_record
 from burridge_knopoff.study.load import load_study
+from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.points import Grid
 from tests.workflow.snakemake import run_workflow
@@ -52,7 +52,6 @@ _STATES = {"pushed": {"position": _EQUAL, "velocity": [0.1, 0.12, 0.09]}}
 
 #: Changes to it in the studies for which every figure and the report are drawn.
 STUDIES: dict[str, dict[str, Any]] = {
-    "paper": {},
     "one_law": {"laws": {"linearized": {}}, "edges": {"a": [0.05], "duration": 800, "samples": 20}},
     "four_laws": {
         "laws": {
@@ -78,9 +77,8 @@ STUDIES: dict[str, dict[str, Any]] = {
     "two_blocks": {"initial": {"pair": {"position": [-0.9, -1.1], "velocity": [0.1, 0.1]}}},
 }
 
-#: Their names as parameters. The finished study of the workflow is like that of the paper; `make test-all` adds the
-#: others.
-SOME_STUDIES = [pytest.param(name, marks=() if name == "one_law" else pytest.mark.slow) for name in STUDIES]
+#: Their names, and that of the finished study.
+ALL_STUDIES = ("paper", *STUDIES)
 
 
 @dataclass(frozen=True)
@@ -111,6 +109,11 @@ class SmallStudy:
         write_study_record(
             self.folder, self.study.config, self.study.parameters, config_file, dict(config), arguments, files
         )
+
+
+def opened(results: Path) -> SmallStudy:
+    """Return a study that has run."""
+    return SmallStudy(recorded_study(results)[1], results)
 
 
 #: The rules of the summaries of points and of models, without those that need attractors or other runs.

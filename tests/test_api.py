@@ -71,6 +71,7 @@ def forms_() -> None:
 """
 
 
+@pytest.mark.slow
 def test_type_checkers_accept_the_documented_calls(tmp_path):
     """The examples, and the other forms of arguments that the docstrings name."""
     parts = [FORMS]

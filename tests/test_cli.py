@@ -316,6 +316,7 @@ def test_a_link_is_kept_and_its_target_is_written(tmp_path):
     assert (tmp_path / "target.nc").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_an_interrupt_ends_a_long_run_with_one_line(tmp_path):
     command = [BK, *RUN, "--solver", "rk4", "--step", "1e-7", "--out", "x.nc"]
     process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)

@@ -8,7 +8,7 @@ import pytest
 DICTIONARY = "docs/dictionary.py"
 
 
-@pytest.mark.parametrize("name", ["one_law", pytest.param("four_laws", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", ["paper", "four_laws"])
 def test_the_page_has_every_variable(repository, small_studies, name):
     dictionary = runpy.run_path(str(repository / DICTIONARY))
     text = (repository / "docs/data.md").read_text(encoding="utf-8")
@@ -26,5 +26,5 @@ def test_the_page_has_every_variable(repository, small_studies, name):
 
 def test_every_summary_has_a_table(repository, small_studies):
     text = (repository / "docs/data.md").read_text(encoding="utf-8")
-    for path in small_studies("one_law").folder.glob("summary/*.nc"):
+    for path in small_studies("paper").folder.glob("summary/*.nc"):
         assert f"<!-- variables of summary/{path.name} -->" in text

@@ -21,6 +21,7 @@ for path in map(Path, sys.argv[1:]):
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("folder", ["benchmarks", "docs"])
 def test_every_program_finds_what_it_imports(folder):
     paths = map(str, sorted((ROOT / folder).glob("*.py")))

@@ -82,6 +82,7 @@ def test_the_times_of_a_cycle_are_those_of_the_ledger(repository, claims):
     assert ours.format(*map(float, (*interval, *both))) in text
 
 
+@pytest.mark.slow
 def test_the_time_of_the_study_is_that_of_a_dry_run(repository, tmp_path):
     command = [sys.executable, "-m", "snakemake", "-n", "--snakefile", "Snakefile", "-d", str(tmp_path / "new")]
     configured = [*command, "--configfile", str(repository / "config/paper.yaml")]

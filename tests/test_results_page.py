@@ -11,6 +11,7 @@ from burridge_knopoff.study.yaml_file import read_yaml
 from tests.workflow.planned import planned
 
 
+@pytest.mark.slow
 def test_the_page_names_files_of_the_default_study(repository):
     config = read_yaml(repository / "config/paper.yaml")
     study = load_study(config, "paper.yaml")

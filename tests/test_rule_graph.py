@@ -3,10 +3,13 @@
 import re
 import runpy
 
+import pytest
+
 from burridge_knopoff.study.yaml_file import read_yaml
 from tests.workflow.planned import planned
 
 
+@pytest.mark.slow
 def test_the_chart_is_that_of_the_rules(repository):
     rules = runpy.run_path(str(repository / "docs/rules.py"))
     graph = rules["rule_graph"]()
@@ -16,6 +19,7 @@ def test_the_chart_is_that_of_the_rules(repository):
     assert {("simulate", "figures"), ("attractors", "basins"), ("claims", "report")} <= rules["arrows"](graph)
 
 
+@pytest.mark.slow
 def test_the_page_names_every_summary_of_the_default_study(repository):
     page = (repository / "docs/results.md").read_text(encoding="utf-8")
     summaries = {

@@ -60,6 +60,7 @@ def test_states_do_not_synchronize_where_synchrony_repels():
     assert state.kind != MotionKind.SYNCHRONIZED
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("law", "a", "state"), [("linearized", 0.115, 0), ("nonlinear", 0.155, 3)])
 def test_transient_chaos_ends_on_an_orbit(law, a, state):
     """Newton's method, started from the state after 100 000 time units, finds the orbit."""
@@ -114,6 +115,7 @@ def test_states_are_followed_out_of_transient_chaos(monkeypatch):
     assert {states.kind for states in asymptotic_states(pair("nonlinear", 0.2), STATES)} == {MotionKind.PERIODIC}
 
 
+@pytest.mark.slow
 def test_the_average_over_chaos_that_ends_is_not_used(monkeypatch):
     model = pair("linearized", 0.18)
     whole = asymptotic_states(model, STATES[:1])[0]

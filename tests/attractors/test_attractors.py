@@ -20,6 +20,7 @@ from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.motion.observables import is_on_attractor
 from burridge_knopoff.motion.section_returns import visit
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
+from tests.conftest import some
 
 SYNCHRONIZED, SYMMETRIC, ASYMMETRIC = Symmetry
 SETTINGS = SearchSettings(transient=2000.0, window=1500.0, seed=3, perturbations=8)
@@ -41,6 +42,7 @@ def search():
     return whole
 
 
+@pytest.mark.slow
 def test_labels_hold_for_whole_runs(search):
     """A label after some hundred time units is that of the motion in which a run of 8000 ends."""
     chosen = states(60, seed=11)
@@ -131,6 +133,7 @@ def test_a_motion_lies_on_its_own_attractor_only(search):
         assert not any(is_on_attractor(again, other, 1e-3, 1e-6) for other in motions)
 
 
+@pytest.mark.slow
 def test_an_orbit_embedded_in_chaos_is_distinguished_from_it():
     """Nonlinear law, a = 0.2075: `minus` ends on an orbit of 11 returns, most nearby states in the chaos around it."""
     embedded = Search(model("nonlinear", 0.2075), dataclasses.replace(SETTINGS, transient=3000.0, window=3000.0))
@@ -143,6 +146,7 @@ def test_an_orbit_embedded_in_chaos_is_distinguished_from_it():
     assert labels[-2] != labels[-1]
 
 
+@pytest.mark.slow
 def test_chaos_of_high_dimension_is_an_attractor():
     """Its returns are so far apart that few states are close to one of them; its lifetime is 1.8 million."""
     chain = Chain(4, 1.657, [1.459, 0.817, 0.902, 0.501], [1.036, 1.205, 1.448, 1.439])
@@ -224,6 +228,7 @@ def test_a_weakly_attracting_orbit_is_distinguished_from_a_torus(law, a, closes)
     assert (later.spacing < 1e-9) == closes
 
 
+@pytest.mark.slow
 def test_orbits_to_which_perturbations_return_quickly_are_not_a_slow_set():
     """Linearized law, a = 0.2125: two mirror pairs, of periods 20 and 40, within 0.005 of each other."""
     chosen = model(a=0.2125)
@@ -240,13 +245,16 @@ def test_orbits_to_which_perturbations_return_quickly_are_not_a_slow_set():
 
 @pytest.mark.parametrize(
     "found_model",
-    [
-        Model(Chain(3), law_of("stribeck", 0.1)),
-        Model(Chain(3), FormulaLaw(0.1, "s + (1 - s)/(1 + a*u/(1 - s))**2", s=0.5)),
-        Model(Chain(3, coupling=(1.0, 1.3), threshold=(1.0, 0.9, 1.1)), law_of("nonlinear", 0.1)),
-        Model(Chain(4, ends="ring", pulling=1.5), law_of("exponential", 0.1)),
-    ],
-    ids=["stribeck", "formula", "asymmetric", "ring"],
+    some(
+        [
+            Model(Chain(3, coupling=(1.0, 1.3), threshold=(1.0, 0.9, 1.1)), law_of("nonlinear", 0.1)),
+            Model(Chain(3), law_of("stribeck", 0.1)),
+            Model(Chain(3), FormulaLaw(0.1, "s + (1 - s)/(1 + a*u/(1 - s))**2", s=0.5)),
+            Model(Chain(4, ends="ring", pulling=1.5), law_of("exponential", 0.1)),
+        ],
+        1,
+    ),
+    ids=["asymmetric", "stribeck", "formula", "ring"],
 )
 def test_runs_of_any_model_end_on_its_attractors(found_model):
     settings = dataclasses.replace(SETTINGS, samples=12)

@@ -117,6 +117,7 @@ def test_amplitudes_follow_the_averaged_equations(start: tuple[float, ...], end:
     assert np.abs(simulated - expected).max() < 0.1
 
 
+@pytest.mark.slow
 def test_most_random_states_follow_the_averaged_equations() -> None:
     """Of 1000 states, 81 % differ by less than 0.1 v and 95 % by less than 0.2 v; 99 % reach the same vertex."""
     differences, same = zip(*map(compare_random_state, range(24)), strict=True)

@@ -5,6 +5,7 @@ import pytest
 
 from burridge_knopoff.basins.pair_separation import BATCHES, PARTS, SEPARATIONS, _select, follow_pairs
 from tests.basins.boundaries import cantor, half_plane
+from tests.conftest import some
 
 UNIT = (0.0, 1.0)
 
@@ -33,8 +34,10 @@ def check_fractions(label, ranges, count, seeds, drawn, separations):
         assert abs(mean[k] - expected) < 3.5 * np.hypot(error[k], plain_error), k
 
 
-@pytest.mark.parametrize("label", [half_plane, pytest.param(cantor(3), id="cantor", marks=pytest.mark.slow)])
-@pytest.mark.parametrize("ranges", [(UNIT, UNIT), ((0.0, 1.0), (0.2, 0.7))], ids=["square", "strip"])
+@pytest.mark.parametrize("label", some([half_plane, cantor(3)], 1), ids=["half_plane", "cantor"])
+@pytest.mark.parametrize(
+    "ranges", [(UNIT, UNIT), pytest.param(((0.0, 1.0), (0.2, 0.7)), marks=pytest.mark.slow)], ids=["square", "strip"]
+)
 def test_the_fraction_is_that_of_plain_sampling(label, ranges):
     check_fractions(label, ranges, 200, 60, 1_000_000, (0, 1, 3, 5))
 

@@ -58,6 +58,7 @@ def basin_maps(table, attractors_at_a):
     return whole(table, attractors_at_a, 1, 1)
 
 
+@pytest.mark.slow
 def test_any_number_of_threads_and_tiles_gives_the_same_labels(table, attractors_at_a, basin_maps):
     for tiles, threads in ((3, 1), (1, 3), (5, 2)):
         assert basin_maps.identical(whole(table, attractors_at_a, tiles, threads)), (tiles, threads)

@@ -82,7 +82,7 @@ TILES = [f"basins/linearized/a0.0800/tile{number}.nc" for number in range(2)]
 RUNS = [f"solvers/{solver}/linearized/minus/a0.2000.nc" for solver in ("map", "rk4")]
 #: A file, its damage, and the finding.
 BAD = [
-    ("summary/mean_distance.nc", begun, "corrupt", "is damaged"),
+    ("summary/bifurcation_diagram.nc", begun, "corrupt", "is damaged"),
     ("summary/agreement.txt", emptied, "corrupt", "is empty"),
     ("summary/claims.json", begun, "corrupt", "was changed after it was written"),
     ("figures/lyapunov.png", begun, "corrupt", "was changed after it was written"),
@@ -95,12 +95,13 @@ BAD = [
 ]
 
 
-@pytest.mark.parametrize(("name", "damage", "kind", "words"), BAD)
-def test_a_bad_file_is_listed(results, name, damage, kind, words):
-    damage(results / name)
+def test_every_bad_file_is_listed(results):
+    for name, damage, *_ in BAD:
+        damage(results / name)
     findings = findings_of(results)
-    assert findings[name][0] == kind
-    assert findings.pop(name)[1].startswith(words)
+    for name, _, kind, words in BAD:
+        assert findings[name][0] == kind
+        assert findings.pop(name)[1].startswith(words)
     assert all(finding[0] == "stale" and finding[1].startswith("was made from ") for finding in findings.values())
 
 
@@ -152,28 +153,33 @@ def test_a_file_made_from_another_version_of_an_input_is_stale(results):
     assert findings[of_it] == ("stale", f"was made from {results / name}, which is corrupt")
 
 
-@pytest.mark.parametrize(
-    ("log", "names"),
-    [
-        ("simulate/linearized/minus/a0.2000", [POINT]),
-        ("simulate_solver/map/linearized/plus/a0.2000", ["solvers/map/linearized/plus/a0.2000.nc"]),
-        ("agreement", [f"summary/agreement.{suffix}" for suffix in ("nc", "csv", "txt")]),
-        ("attractors/nonlinear", [f"{folder}/nonlinear.nc" for folder in ("attractors", "refined", "returns")]),
-        ("figure_motion_minus", [f"figures/motion_minus.{suffix}" for suffix in ("pdf", "png")]),
-        # Only a request by name starts it.
-        ("figure_chains", [f"figures/chains.{suffix}" for suffix in ("pdf", "png")]),
-        ("report", ["report.html"]),
-    ],
-)
-def test_what_was_begun_and_not_made_is_missing(results, log, names):
-    log = results / f"logs/{log}.log"
-    for name in names:
-        (results / name).unlink(missing_ok=True)
-    failed = ("missing", f"its job failed: MemoryError: no more (log {log})")
-    for text, finding in (("", ("missing", "not made yet")), ("Traceback…\nMemoryError: no more\n", failed)):
-        log.write_text(text)
+#: {log of a job: its files}
+BEGUN = {
+    "simulate/linearized/minus/a0.2000": [POINT],
+    "simulate_solver/map/linearized/plus/a0.2000": ["solvers/map/linearized/plus/a0.2000.nc"],
+    "agreement": [f"summary/agreement.{suffix}" for suffix in ("nc", "csv", "txt")],
+    "attractors/nonlinear": [f"{folder}/nonlinear.nc" for folder in ("attractors", "refined", "returns")],
+    "figure_motion_minus": [f"figures/motion_minus.{suffix}" for suffix in ("pdf", "png")],
+    # Only a request by name starts it.
+    "figure_chains": [f"figures/chains.{suffix}" for suffix in ("pdf", "png")],
+    "report": ["report.html"],
+}
+
+
+def test_what_was_begun_and_not_made_is_missing(results):
+    for names in BEGUN.values():
+        for name in names:
+            (results / name).unlink(missing_ok=True)
+    for text, reason in (
+        ("", "not made yet"),
+        ("Traceback…\nMemoryError: no more\n", "its job failed: MemoryError: no more (log {log})"),
+    ):
+        for name in BEGUN:
+            (results / f"logs/{name}.log").write_text(text)
         findings = findings_of(results)
-        assert [findings.pop(name) for name in names] == [finding] * len(names)
+        for name, files in BEGUN.items():
+            finding = ("missing", reason.format(log=results / f"logs/{name}.log"))
+            assert [findings.pop(file) for file in files] == [finding] * len(files)
         assert all(reason.startswith("was made from ") for _, reason in findings.values())
 
 

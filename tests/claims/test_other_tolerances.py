@@ -93,6 +93,7 @@ def test_the_evidence_itself_is_not_changed():
     assert all(world[name].identical(same[name]) for name in same)
 
 
+@pytest.mark.slow
 def test_states_that_round_to_the_papers_and_reach_another_attractor_are_listed():
     world = paper_world()
     assert rounded_state_changes(evidence(world), ["minus", "plus"], ["linearized"], BELOW) == []

@@ -255,14 +255,20 @@ def test_claims_about_one_law_are_judged_without_the_other(name: str) -> None:
         assert verdict.verdict == HOLDS, verdict.reason
 
 
-@pytest.mark.parametrize("name", CLAIMS)
-def test_an_additional_law_changes_no_verdict(name: str) -> None:
-    """Its numbers would contradict every claim."""
+@pytest.fixture(scope="module")
+def three_laws() -> Summaries:
+    """The world with a third law, whose numbers would contradict every claim."""
     world = {}
     for key, item in paper_world().items():
         dimensions = [dimension for dimension in ("law", "other_law") if dimension in item.dims]
         names = {dimension: [*item[dimension].values, "stribeck"] for dimension in dimensions}
         world[key] = item.reindex(names, fill_value=-1)
+    return world
+
+
+@pytest.mark.parametrize("name", CLAIMS)
+def test_an_additional_law_changes_no_verdict(three_laws: Summaries, name: str) -> None:
+    world = dict(three_laws)
     laws = {"linearized": {}, "nonlinear": {}, "stribeck": {}}
     assert judge_claim(name, evidence(world, laws=laws)) == judge_claim(name, evidence(paper_world()))
     first = judge_claim(name, evidence(world, laws={"stribeck": {}, **laws}))

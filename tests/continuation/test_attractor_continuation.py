@@ -100,6 +100,7 @@ def test_attractors_found_only_in_basin_sampling_seed_the_others():
     assert 2 not in whole.samples[0]
 
 
+@pytest.mark.slow
 def test_results_do_not_depend_on_processes_or_the_cache(tmp_path, monkeypatch, caplog):
     """With one more value cached results are used, and the results are those of a run without a cache."""
     monkeypatch.setattr(fractions, "LABELLED_AT_ONCE", 30)

@@ -55,6 +55,7 @@ def edge_states(table):
     return edges_at(table)
 
 
+@pytest.mark.slow
 def test_every_two_branches_have_an_edge_state_between_them(edge_states):
     between = {
         tuple(sorted(zip(edge.branch.tolist(), edge.side.tolist(), strict=True))): edge.state for edge in edge_states

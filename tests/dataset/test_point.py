@@ -132,6 +132,7 @@ def test_exponents_that_were_not_computed_are_nan(tmp_path):
         assert dataset["lyapunov_infinite_count"].item() == -1
 
 
+@pytest.mark.slow
 def test_files_comply_with_cf(tmp_path):
     law = FormulaLaw(0.08, "1 - c*tanh(a*u/c)", name="soft", c=0.1)
     files = [str(tmp_path / name) for name in ("open.nc", "ring.nc")]

@@ -49,9 +49,7 @@ def point(small):
     return to_dataset(run(study.model("linearized", 0.2), grid.initial["minus"], grid.settings["linearized"]))
 
 
-@pytest.mark.parametrize(
-    "count", [pytest.param(count, marks=() if count in (1, 4) else pytest.mark.slow) for count in STATES]
-)
+@pytest.mark.parametrize("count", STATES)
 def test_figures_of_one_to_eight_states(count, small, point):
     names = [f"s{k}" for k in range(count)]
     summaries = {name: with_states(data, names) for name, data in small.summaries.items()}

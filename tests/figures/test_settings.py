@@ -50,6 +50,7 @@ def run():
     return simulate("linearized", 0.08, "plus", transient=50.0, window=50.0, batches=2)
 
 
+@pytest.mark.slow
 def test_pictures_have_the_same_bytes(run, tmp_path):
     point = to_dataset(run)
     for name, settings in (("plain", {}), ("own", OWN)):

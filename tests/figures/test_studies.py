@@ -9,10 +9,10 @@ from burridge_knopoff.dataset.point import to_dataset
 from burridge_knopoff.figures.description import figure_descriptions
 from burridge_knopoff.figures.style import write_figure
 from burridge_knopoff.running.simulation import run
-from tests.small_study import SOME_STUDIES
+from tests.small_study import ALL_STUDIES
 
 
-@pytest.fixture(scope="module", params=SOME_STUDIES)
+@pytest.fixture(scope="module", params=ALL_STUDIES)
 def small(request, small_studies):
     return small_studies(request.param)
 

@@ -24,6 +24,8 @@ from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
 from tests.fuzzing import check_refusal, examples
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 PARSER = build_parser()
 EVERY_KEY = Path(__file__).with_name("every_key.yaml").read_text()

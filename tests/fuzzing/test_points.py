@@ -16,6 +16,8 @@ from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from tests.fuzzing import check_refusal, examples
 
+pytestmark = pytest.mark.slow
+
 NAMES = tuple(POINT_VARIABLES)
 SETTINGS = Settings(transient=10.0, window=20.0, batches=2, event_window=5.0, trajectory=1.0)
 STATE = PAPER_STATES["plus"]

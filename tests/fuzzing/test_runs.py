@@ -20,6 +20,8 @@ from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from tests.fuzzing import check_refusal, examples
 
+pytestmark = pytest.mark.slow
+
 #: Limit on the steps of rk4, so that no test has to wait for a longer run.
 MOST_STEPS = 20_000
 ODD_NUMBERS = (math.nan, math.inf, -math.inf, -1.0, -0.0, 0.0, 5e-324, 1e-300, 1e-9, 2e9, 1e10, 1e300, 2.0, 10**400)

@@ -92,6 +92,7 @@ def test_forces_and_displacements_balance(law, groups):
     assert (table["epicentre"] <= table["last_block"]).all()
 
 
+@pytest.mark.slow
 def test_energy_is_the_work_of_friction():
     """The work is computed by quadrature of friction times speed along the whole motion, between two times of rest."""
     model = Model(Chain(6, coupling=2.0, pulling=1.0), law_of("nonlinear", 0.5), 0.01)

@@ -197,6 +197,7 @@ def test_slip_events_can_be_continued_in_any_mode():
         assert np.allclose(table, tables[0], rtol=1e-9, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_the_end_of_a_catalogue_is_accepted_wherever_a_state_is():
     """Each of these once ended in a segmentation fault from 24 blocks on."""
     model = Model(Chain(30, coupling=3.0, pulling=1.0), law_of(DROP, 1.0), 0.05)

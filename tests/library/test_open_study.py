@@ -179,6 +179,7 @@ def test_threads_may_open_files(results):
     assert (run.returncode, run.stdout) == (0, f"{3 * (11 + 8)}\n")
 
 
+@pytest.mark.slow
 def test_the_whole_tree_is_one_file(results, tmp_path):
     open_study(results)["/"].to_netcdf(tmp_path / "all.nc")
     assert (tmp_path / "all.nc").stat().st_size > 10_000

@@ -66,6 +66,7 @@ def run(tmp_path):
     return snakemake
 
 
+@pytest.mark.slow
 def test_a_run_knows_its_command_line_its_groups_and_its_jobs(run):
     """The job of `a` is done: only that of `b` is planned."""
     assert run("-c3", "a", "--config", "key=1", "--group-components", "many=4")[:2] == [
@@ -79,6 +80,7 @@ def test_a_run_knows_its_command_line_its_groups_and_its_jobs(run):
     assert on == "ON None False ['all']"
 
 
+@pytest.mark.slow
 def test_a_dry_run_and_a_touch_are_known(run):
     assert run("-n", "b") == ["READ [] {} 1 True"]
     run("-c1")

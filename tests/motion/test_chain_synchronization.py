@@ -280,6 +280,7 @@ def test_deviations_from_the_multiplier_are_within_the_error(law, window):
     assert max(deviations) < 3.0
 
 
+@pytest.mark.slow
 def test_in_chaos_the_error_is_the_scatter_of_whole_windows():
     """Consecutive windows scatter by the error of each."""
     chain = model(6, 0.25)

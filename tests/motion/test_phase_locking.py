@@ -29,6 +29,7 @@ def seen(model, start, window):
     return trajectory.event_time[stops], states[stops]
 
 
+@pytest.mark.slow
 def test_orbit_of_a_locked_torus_is_where_the_motion_ends():
     start = visit(LOCKED, ON_IT, 30_000.0, 500.0).state()
     times, returns = seen(LOCKED, start, 12_000.0)

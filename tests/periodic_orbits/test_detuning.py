@@ -100,6 +100,7 @@ def test_mean_frequencies_stay_equal_beyond_the_tongue_of_synchrony(grazing):
     assert frequency[2] == pytest.approx(frequency[0], abs=1e-6)
 
 
+@pytest.mark.slow
 def test_a_fold_in_the_mass_of_one_end_begins_at_the_pitchfork():
     """Above a_c two asymmetric orbits attract; that of the heavier leader ends at a fold, which is a cusp at a_c."""
     model = Model(Chain(3), law_of("linearized", 0.09))

@@ -29,6 +29,7 @@ from burridge_knopoff import (
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.periodic import find_periodic_orbit
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import bifurcations_of, critical_a
+from tests.conftest import some
 from tests.refused import refused
 
 #: a_c of the paper's chain, from interval arithmetic.
@@ -107,7 +108,7 @@ def check_curve(bifurcation, kind, parameter, a, accuracy):
 
 
 @pytest.mark.parametrize("parameter", ["damping", "pulling_damping", "pulling_damping[2]"])
-@pytest.mark.parametrize("first", [True, False])
+@pytest.mark.parametrize("first", some([False, True], 1))
 def test_curves_begin_at_0(parameter, first):
     """The parameter is either of the two of the curve; along it no root is bracketed at 0."""
     start = MODEL.at(**{parameter: 0.0})
@@ -168,6 +169,7 @@ def test_the_mirror_image_of_an_orbit_has_the_same_curve(seven_stops):
     assert inside[:, 0] == pytest.approx(CubicSpline(second[:, 1], second[:, 0])(inside[:, 1]), abs=1e-7)
 
 
+@pytest.mark.slow
 def test_under_another_law_positions_depend_on_two_numbers(families):
     """a_c θ at v = 0.1 is a_c at v/θ, which is computed without a curve."""
     pitchfork = bifurcation_near(near(families["nonlinear"], 0.0887), 0.0887172229711765)
@@ -184,6 +186,7 @@ def test_at_small_velocities_only_the_slope_of_the_law_at_rest_matters(families)
     assert a == pytest.approx(CRITICAL * (1.0 + 0.2 * v), abs=5e-6)
 
 
+@pytest.mark.slow
 def test_the_curve_of_synchrony_in_a_and_coupling(families):
     """Compare with a_c at single couplings; the curve turns back in the coupling."""
     pitchfork = bifurcation_near(near(families["linearized"], CRITICAL), CRITICAL)

@@ -27,6 +27,7 @@ def branch(family):
     return prove_branch(family.at(0.086), fmpq(86, 1000), fmpq(88, 1000))
 
 
+@pytest.mark.slow
 def test_the_interval_contains_a_c_of_50_digits_and_of_double_precision(critical_orbit, family):
     guess = [float(value) for value in (*critical_orbit.orbit.enclosure.inner, critical_orbit.a)]
     exact = exact_orbit(guess, None)

@@ -31,6 +31,7 @@ def proved(family):
     return prove_at(family, 0.08)
 
 
+@pytest.mark.slow
 def test_enclosures_contain_the_orbit_of_50_digits(proved):
     exact = exact_orbit([float(value) for value in proved.enclosure.inner], 0.08)
     for ball, number in zip(proved.enclosure.inner, exact.unknown, strict=True):

@@ -159,6 +159,7 @@ def critical_orbit(family):
     return prove_critical(family.at(critical_a(bifurcations_of(family))))
 
 
+@pytest.mark.slow
 def test_a_c_of_the_nonlinear_law(critical_orbit, family):
     assert width(critical_orbit.a) < 1e-17
     assert abs(critical_a(bifurcations_of(family)) - float(critical_orbit.a)) < 2e-15
@@ -172,6 +173,7 @@ def test_a_c_of_the_nonlinear_law(critical_orbit, family):
     )
 
 
+@pytest.mark.slow
 def test_a_c_agrees_with_an_integration_of_25_digits(critical_orbit):
     """Integrate a period from the enclosed positions with the Taylor series of mpmath."""
     inner = critical_orbit.orbit.enclosure.inner
@@ -190,6 +192,7 @@ def test_a_c_agrees_with_an_integration_of_25_digits(critical_orbit):
         assert abs(z[4] - 1) < mpf(10) ** -17
 
 
+@pytest.mark.slow
 def test_a_wrong_arc_is_not_certified(critical_orbit):
     wrong = changed(critical_orbit.orbit, 3, arb("0.1"))
     with pytest.raises(ProofError, match="blocks 1 and 3, the arc until block 2 start: not proved to keep sticking"):
@@ -197,6 +200,7 @@ def test_a_wrong_arc_is_not_certified(critical_orbit):
     assert len(follow_arcs(wrong.arcs, [*wrong.enclosure.inner, wrong.a])[0]) == 5
 
 
+@pytest.mark.slow
 def test_a_ball_of_a_that_is_too_wide_is_refused(family):
     with arithmetic():
         wide = arb("0.08") + arb(0, 1e-3)

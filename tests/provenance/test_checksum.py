@@ -63,6 +63,7 @@ def content(path):
         )
 
 
+@pytest.mark.slow
 def test_no_flipped_byte_that_changes_what_is_read_passes(path):
     """A file with a flipped byte is refused, or reads exactly as before."""
     whole, before = path.read_bytes(), content(path)

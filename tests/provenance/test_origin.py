@@ -12,18 +12,11 @@ from burridge_knopoff.provenance.origin import check_origin
 from burridge_knopoff.provenance.record import read_study_record
 from burridge_knopoff.provenance.sources import SCRIPTS, source_fingerprint
 from tests.forged import forge
-from tests.small_study import SMALL, run_study
-
-
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("origin") / "results/small"
-    return run_study(folder, {**SMALL, "without": ["attractors", "two_blocks", "solvers", "proof"]}, ("all",)).folder
 
 
 @pytest.fixture
-def results(whole, tmp_path):
-    return shutil.copytree(whole, tmp_path / "results/small")
+def results(finished, tmp_path):
+    return shutil.copytree(finished.folder / "results/tiny", tmp_path / "results/tiny")
 
 
 def check(results, name):
@@ -36,7 +29,8 @@ def test_a_summary_says_with_what_it_was_made(results):
         attributes = vars(dataset)
     assert (attributes["file"], attributes["rule"]) == ("summary/mean_distance.nc", "mean_distance")
     params = json.loads(attributes["params"])
-    assert (params["a"], params["transient"], params["synchronization_threshold"]) == ([0.05, 0.2], 100.0, 1e-6)
+    assert params["a"] == [0.05, 0.08, {"from": 0.2, "to": 0.22, "step": 0.02}]
+    assert (params["transient"], params["synchronization_threshold"]) == (100.0, 1e-6)
     # Neither a key of another stage, nor the step, which only rk4 has.
     assert not {"basins", "agreement", "attractors", "step"} & {*params}
     assert "NumPy" in attributes["versions"]

@@ -144,6 +144,7 @@ for name, imports in json.load(sys.stdin).items():
 """
 
 
+@pytest.mark.slow
 def test_every_module_that_a_rule_loads_is_among_its_sources():
     """Only modules that determine its files count; the worker that calls them does not affect these."""
     programs = {name: "\n".join(map(imports, entries)) for name, entries in MAKERS.items()}

@@ -13,7 +13,7 @@ from burridge_knopoff.report.page import Sources, render
 from burridge_knopoff.study.load import load_study
 from tests.report.conftest import CLAIMS
 from tests.report.test_page import Page
-from tests.small_study import SMALL, SOME_STUDIES, STUDIES
+from tests.small_study import ALL_STUDIES, SMALL, STUDIES
 
 STORED = (
     "mean_distance",
@@ -26,7 +26,7 @@ STORED = (
 )
 
 
-@pytest.fixture(scope="module", params=SOME_STUDIES)
+@pytest.fixture(scope="module", params=ALL_STUDIES)
 def small(request, small_studies):
     return small_studies(request.param)
 

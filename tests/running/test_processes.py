@@ -103,6 +103,7 @@ with parallel_map(3) as each:
 """
 
 
+@pytest.mark.slow
 def test_no_process_outlives_the_one_that_is_killed():
     with subprocess.Popen([sys.executable, "-c", KILLED], stdout=subprocess.PIPE, text=True) as killed:
         children = [psutil.Process(int(killed.stdout.readline())) for _ in range(3)]

@@ -14,6 +14,7 @@ from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.yaml_file import read_config
+from tests.conftest import some
 from tests.flows import carry, check_events, listed, wave
 from tests.refused import refused
 from tests.scipy_flow import model_events, scipy_events
@@ -53,13 +54,16 @@ def carlson_langer(a):
 
 @pytest.mark.parametrize(
     ("model", "a", "end", "least", "tolerance"),
-    [
-        (unequal_blocks, 0.1, 500.0, 60, 1e-8),
-        (unequal_blocks, 0.4, 500.0, 20, 1e-8),
-        # Chaos: errors grow by a factor of e in about ten units of time.
-        (carlson_langer, 2.0, 100.0, 40, 1e-6),
-        (carlson_langer, 5.0, 150.0, 40, 1e-6),
-    ],
+    some(
+        [
+            # Chaos: errors grow by a factor of e in about ten units of time.
+            (carlson_langer, 2.0, 100.0, 40, 1e-6),
+            (unequal_blocks, 0.1, 500.0, 60, 1e-8),
+            (unequal_blocks, 0.4, 500.0, 20, 1e-8),
+            (carlson_langer, 5.0, 150.0, 40, 1e-6),
+        ],
+        2,
+    ),
 )
 def test_example_studies_against_scipy(repository, model, a, end, least, tolerance):
     file = repository / "config" / "examples" / f"{model.__name__}.yaml"

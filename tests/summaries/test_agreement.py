@@ -10,6 +10,7 @@ from scipy.stats import wasserstein_distance
 from burridge_knopoff import simulate
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary, write_summary
+from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries import agreement
 from burridge_knopoff.summaries.judgement import compare_laws
@@ -40,13 +41,31 @@ def compare(runs, tmp_path):
     return compared
 
 
-def summarize_kinds(grid, *datasets, kind=None):
-    """Return the comparison, of runs of a given kind if there is one."""
-    of_runs = kinds(grid, MOTION)
-    if kind is not None:
-        of_runs["run_kind"][...] = kind
-    read = scalars(grid), of_runs, agreement.compare_events(grid)
-    return agreement.summarize(*read, *datasets, synchronization_threshold=1e-6, agreement=AGREEMENT)
+@pytest.fixture(scope="module")
+def read(runs, tmp_path_factory):
+    """The grid of the runs, and what is read from their files."""
+    grid = grid_of(tmp_path_factory.mktemp("runs"), ["minus"], {"0.0500": 0.05, "0.0800": 0.08}, **SETTINGS)
+    for _, (law, initial, a) in grid:
+        write_point(runs[law, grid.a[a]], grid.path(law, initial, a))
+    return grid, scalars(grid), kinds(grid, MOTION), agreement.compare_events(grid)
+
+
+def kinds_with(read, mean_distance, run_kind, **reached):
+    """Return the comparison of runs that all have one exact ⟨J⟩ and kind, with attractors, see `attractors_of`."""
+    grid, means, of_runs, events = read
+    values = {"mean_distance": mean_distance, "mean_distance_error": 0.0}
+    means = means.assign({name: xarray.full_like(means[name], value) for name, value in values.items()})
+    of_runs = of_runs.assign(run_kind=xarray.full_like(of_runs["run_kind"], run_kind))
+    return compared_with(means, of_runs, events, attractors_of(grid, **reached))
+
+
+def compared_with(*summaries):
+    return agreement.summarize(*summaries, synchronization_threshold=1e-6, agreement=AGREEMENT)
+
+
+def summarize_kinds(grid, *attractors):
+    """Return the comparison of the runs in the files of a grid."""
+    return compared_with(scalars(grid), kinds(grid, MOTION), agreement.compare_events(grid), *attractors)
 
 
 def test_without_attractors_it_is_undetermined_which_runs_settled(compare):
@@ -146,9 +165,8 @@ def test_the_order_of_events_is_compared_until_the_first_run_ends(compare, law):
         (0.2, 0.0, -1, -1),
     ],
 )
-def test_a_run_may_not_reach_the_attractor_of_its_state(runs, compare, mean, error, branch, settled):
-    values = {key: {"mean_distance": 0.2, "mean_distance_error": 0.0} for key in runs}
-    _, dataset = compare(values, mean=mean, error=error, branch=branch)
+def test_a_run_may_not_reach_the_attractor_of_its_state(read, mean, error, branch, settled):
+    dataset = kinds_with(read, 0.2, MotionKind.PERIODIC, mean=mean, error=error, branch=branch)
     assert (dataset["settled"] == settled).all()
 
 
@@ -176,9 +194,8 @@ def test_a_run_may_not_reach_the_attractor_of_its_state(runs, compare, mean, err
         (-1, {"kind": 0}, np.nan, -1),
     ],
 )
-def test_the_kind_of_a_run_is_that_of_its_attractor(runs, compare, own, of_attractor, mean, kind):
-    grid, _ = compare({key: {"mean_distance": mean, "mean_distance_error": 0.0} for key in runs})
-    dataset = summarize_kinds(grid, attractors_of(grid, **of_attractor), kind=own)
+def test_the_kind_of_a_run_is_that_of_its_attractor(read, own, of_attractor, mean, kind):
+    dataset = kinds_with(read, mean, own, **of_attractor)
     assert (dataset["kind"] == kind).all()
     of_attractor_taken = kind != own or (own, kind) == (2, 2)
     assert of_attractor_taken or np.isnan(dataset["period"]).any() or (dataset["period"] != 40.0).any()
@@ -187,9 +204,8 @@ def test_the_kind_of_a_run_is_that_of_its_attractor(runs, compare, own, of_attra
 @pytest.mark.parametrize(
     ("own", "of_attractor", "settled"), [(1, 2, 1), (3, 3, 1), (3, 4, 1), (3, 1, 0), (1, 3, 0), (1, -1, 1)]
 )
-def test_a_run_of_another_kind_is_not_on_the_attractor(runs, compare, own, of_attractor, settled):
-    grid, _ = compare({key: {"mean_distance": 0.2, "mean_distance_error": 0.0} for key in runs})
-    dataset = summarize_kinds(grid, attractors_of(grid, kind=of_attractor, branch=4, mean=0.2), kind=own)
+def test_a_run_of_another_kind_is_not_on_the_attractor(read, own, of_attractor, settled):
+    dataset = kinds_with(read, 0.2, own, kind=of_attractor, branch=4, mean=0.2)
     assert (dataset["settled"] == settled).all()
 
 

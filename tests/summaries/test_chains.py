@@ -82,6 +82,7 @@ def test_fractions_count_outcomes(files):
     assert "blocks" not in point.attrs
 
 
+@pytest.mark.slow
 def test_two_blocks_agree_where_both_synchronize(compared):
     """Each other law is compared with the first one."""
     assert compared["other_law"].values.tolist() == ["nonlinear", "exponential"]
@@ -108,6 +109,7 @@ def train_model(model):
     return replace(model, chain=Chain(2, pulling=(1.0, 0.0)))
 
 
+@pytest.mark.slow
 def test_two_blocks_are_described_by_their_asymptotic_motion(compared):
     """Kind and ⟨J⟩ belong to the asymptotic motion, the order of events to the run from the start."""
     chains_of = [train_model, lambda law: law]

@@ -32,6 +32,7 @@ def dataset():
     return summarize(models(), [0.0, 0.05, 0.1])
 
 
+@pytest.mark.slow
 def test_curves_agree_with_the_orbits(dataset):
     assert dataset["status"].values.tolist() == [[1, 0, 0]] * 2
     assert dataset.attrs["v"] == 0.1

@@ -29,6 +29,7 @@ def linearized(dataset):
     return dataset.sel(law="linearized")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", [PAPER, NONLINEAR], ids=["linearized", "nonlinear"])
 def test_every_interval_agrees_with_double_precision(dataset, model):
     family, part = synchronized_orbits(model), dataset.sel(law=model.law.name)
@@ -49,6 +50,7 @@ def test_every_interval_agrees_with_double_precision(dataset, model):
     assert part["critical_a"].values == pytest.approx([a_c] * 2, abs=2e-15)
 
 
+@pytest.mark.slow
 def test_intervals_are_narrow_and_rounded_outward(dataset):
     for name in ("critical_a", "a", "period", "event_time", "position", "multiplier", "multiplier_slope"):
         low, high = (dataset[name].sel(end=end).values for end in proof.END)
@@ -65,6 +67,7 @@ def test_intervals_are_narrow_and_rounded_outward(dataset):
     assert (dataset["least_spring_force"] > 0.89).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", ["linearized", "nonlinear"])
 def test_the_digits_are_those_between_the_doubles(dataset, law):
     middle, error = dataset["critical_a_digits"].sel(law=law).item().strip("[]").split(" +/- ")
@@ -73,6 +76,7 @@ def test_the_digits_are_those_between_the_doubles(dataset, law):
     assert Fraction(error) < Fraction(1, 10**17 if law == "nonlinear" else 10**40)
 
 
+@pytest.mark.slow
 def test_the_text_has_the_numbers_and_the_assumptions(dataset):
     text = proof.digest(dataset)
     for law in ("linearized", "nonlinear"):
@@ -85,6 +89,7 @@ def test_the_text_has_the_numbers_and_the_assumptions(dataset):
     assert max(map(len, text.splitlines())) <= 120
 
 
+@pytest.mark.slow
 def test_the_file_is_reproducible(linearized, tmp_path):
     for name in ("one", "other"):
         dataset = proof.summarize([PAPER])

@@ -3,9 +3,7 @@
 import json
 import shutil
 import subprocess
-from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -13,6 +11,7 @@ from burridge_knopoff.provenance.files import write_text
 from burridge_knopoff.provenance.record import write_study_record
 from burridge_knopoff.study.load import load_study
 from tests.bad_configs import BAD_FILES, FIRST_OF_KEYS, GOOD
+from tests.conftest import some
 from tests.workflow.conftest import TINY, Study
 from tests.workflow.snakemake import run_snakemake
 
@@ -21,11 +20,6 @@ ANNOUNCED = ("Using workflow specific profile", "Assuming unrestricted shared fi
 
 # Snakemake makes empty folders and its log before it reads the Snakefile.
 OF_SNAKEMAKE = ".snakemake"
-
-
-def some(cases: Iterable[str], count: int) -> list[Any]:
-    """Return cases that a study refuses in the same place, all except the first few marked as slow."""
-    return [pytest.param(case, marks=pytest.mark.slow if n >= count else ()) for n, case in enumerate(cases)]
 
 
 def check(run: subprocess.CompletedProcess[str], folder: Path, files: list[str], words: list[str]) -> None:
@@ -47,7 +41,7 @@ def check(run: subprocess.CompletedProcess[str], folder: Path, files: list[str],
 FILES, KEYS = (list(BAD_FILES)[part] for part in (slice(FIRST_OF_KEYS), slice(FIRST_OF_KEYS, None, 9)))
 
 
-@pytest.mark.parametrize("case", [*FILES, *some(KEYS, 2)])
+@pytest.mark.parametrize("case", some([*FILES, *KEYS], 2))
 def test_a_bad_config(tmp_path, case):
     content, words = BAD_FILES[case]
     study = Study(tmp_path)
@@ -116,7 +110,7 @@ TARGETS = {
 }
 
 
-@pytest.mark.parametrize("target", some(TARGETS, 5))
+@pytest.mark.parametrize("target", some(TARGETS, 2))
 def test_a_target_that_does_not_belong_to_the_study(tmp_path, target):
     check(Study(tmp_path, TINY).run(target), tmp_path, ["study.yaml"], TARGETS[target])
 
@@ -127,26 +121,37 @@ ONE_LAW = "laws: {linearized: {}}\nchain: {mass: [1, 1, 1.2]}\n"
 
 @pytest.mark.parametrize(
     ("change", "target", "words"),
-    [
-        (LEFT_OUT, "proof", "proof: not made: part of stage proof: remove proof from `without: [attractors, pr"),
-        (LEFT_OUT, "results/tiny/summary/attractors.nc", "part of stage attractors: remove attractors from `without"),
-        (
-            LEFT_OUT,
-            "basins",
-            "basins: not made: part of stage basins, which needs attractors: remove attractors from `without",
-        ),
-        (LEFT_OUT, "results/tiny/figures/branches_reached.png", "part of stage attractors: remove attractors from"),
-        (
-            ONE_LAW,
-            "results/tiny/figures/agreement.png",
-            "figures/agreement.png: not made: it needs a second law in `laws`",
-        ),
-        ("laws: {linearized: {}}\n", "two_blocks", "two_blocks: not made: it needs a second law"),
-        ("without: [basins]\n", "basins", "basins: not made: part of stage basins: remove basins from `without: [ba"),
-        (ONE_LAW, "figure_orbits", "figure_orbits: not made: it needs a mirror-symmetric chain of 3 blocks"),
-        (ONE_LAW, "chains", "summary/chains.nc: not made: chain.mass: got [1.0, 1.0, 1.2], expected one number"),
-        (ONE_LAW, "watch_chain", "watch_chain: not a target: chain.mass: got [1.0, 1.0, 1.2], expected one number"),
-    ],
+    some(
+        [
+            (LEFT_OUT, "proof", "proof: not made: part of stage proof: remove proof from `without: [attractors, pr"),
+            (
+                LEFT_OUT,
+                "results/tiny/summary/attractors.nc",
+                "part of stage attractors: remove attractors from `without",
+            ),
+            (
+                LEFT_OUT,
+                "basins",
+                "basins: not made: part of stage basins, which needs attractors: remove attractors from `without",
+            ),
+            (LEFT_OUT, "results/tiny/figures/branches_reached.png", "part of stage attractors: remove attractors from"),
+            (
+                ONE_LAW,
+                "results/tiny/figures/agreement.png",
+                "figures/agreement.png: not made: it needs a second law in `laws`",
+            ),
+            ("laws: {linearized: {}}\n", "two_blocks", "two_blocks: not made: it needs a second law"),
+            (
+                "without: [basins]\n",
+                "basins",
+                "basins: not made: part of stage basins: remove basins from `without: [ba",
+            ),
+            (ONE_LAW, "figure_orbits", "figure_orbits: not made: it needs a mirror-symmetric chain of 3 blocks"),
+            (ONE_LAW, "chains", "summary/chains.nc: not made: chain.mass: got [1.0, 1.0, 1.2], expected one number"),
+            (ONE_LAW, "watch_chain", "watch_chain: not a target: chain.mass: got [1.0, 1.0, 1.2], expected one number"),
+        ],
+        2,
+    ),
 )
 def test_a_target_that_the_config_excludes(tmp_path, change, target, words):
     """The message names the key that decides."""
@@ -201,7 +206,7 @@ LINES = {
 }
 
 
-@pytest.mark.parametrize("case", LINES)
+@pytest.mark.parametrize("case", some(LINES, 2))
 def test_a_bad_command_line(tmp_path, case):
     arguments, words = LINES[case]
     study = Study(tmp_path, TINY)
@@ -222,6 +227,7 @@ def test_the_folder_of_the_workflow_is_not_the_folder_of_a_study(tmp_path, repos
     assert not (tmp_path / "workflow" / "results").exists()
 
 
+@pytest.mark.slow
 def test_a_folder_of_results_belongs_to_its_config(tmp_path):
     """The same file may be edited; another one of the same name is refused with a remedy, and nothing is written."""
     study = Study(tmp_path, TINY)
@@ -254,6 +260,7 @@ def test_a_cluster_that_does_not_answer_gets_no_job(tmp_path):
     assert not (study.folder / "results").exists()
 
 
+@pytest.mark.slow
 def test_a_config_with_any_name_is_read(tmp_path):
     """The config from which the bad ones are made is itself valid."""
     for name in ("my study.yaml", "Größe.yaml", "study.json", "study"):

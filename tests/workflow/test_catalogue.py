@@ -15,6 +15,8 @@ from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.yaml_file import read_yaml
 from tests.workflow.conftest import Study
 
+pytestmark = pytest.mark.slow
+
 BEFORE = """
 study: quakes
 a: [1.0, 2.0, 3.0]
@@ -113,7 +115,6 @@ def test_the_statistics_are_those_of_the_events(study):
         assert part["shown_magnitude"].max() == part["largest_magnitude"] == magnitude.max()
 
 
-@pytest.mark.slow
 def test_a_picture_does_not_depend_on_the_users_settings_of_matplotlib(study):
     """Settings come from a matplotlibrc or from a notebook that starts snakemake. The program itself is started."""
     before = study.files("figures")
@@ -174,7 +175,6 @@ catalogue: {transient: 0, window: 300}
 """
 
 
-@pytest.mark.slow
 def test_a_catalogue_whose_run_diverged_is_a_failure(tmp_path, capsys):
     study = Study(tmp_path / "study", RUNAWAY)
     output = study.ok()

@@ -47,6 +47,7 @@ def test_the_target_makes_its_files_and_no_points(study):
     assert {log.read_text() for log in (results / "logs").rglob("*.log")} == {""}
 
 
+@pytest.mark.slow
 def test_a_study_that_lists_their_lengths_includes_them(study):
     with_them = re.compile(r"^(watch_chain|chains_summary|figure_chains) ", re.MULTILINE)
     assert len(set(with_them.findall(study.ok("-n", "-p", "-F")))) == 3
@@ -56,6 +57,7 @@ def test_a_study_that_lists_their_lengths_includes_them(study):
     study.config.write_text(CHAINS)
 
 
+@pytest.mark.slow
 def test_the_same_bytes_on_one_core_and_in_another_folder(study, tmp_path):
     other = Study(tmp_path, CHAINS)
     other.ok("chains", cores=1)
@@ -65,6 +67,7 @@ def test_the_same_bytes_on_one_core_and_in_another_folder(study, tmp_path):
     assert len(mine) == 5
 
 
+@pytest.mark.slow
 def test_the_model_reruns_them_but_not_the_settings_of_points(study):
     planned = study.ok("chains", "-n")
     assert "Nothing to be done" in planned

@@ -33,7 +33,6 @@ def as_old_as(path, change):
     os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
 
 
-@pytest.mark.slow
 def test_every_stage_stops_at_a_bad_file(limited, tmp_path):
     """The files are newer than the results made from them, so the next run reads them. Its command repairs them all."""
     study = copied(limited.folder, tmp_path / "study")
@@ -62,7 +61,6 @@ def test_every_stage_stops_at_a_bad_file(limited, tmp_path):
     check_end(study, limited, *targets)
 
 
-@pytest.mark.slow
 def test_a_bad_file_with_its_old_modification_time(copy, finished, limited):
     """Snakemake does not notice the change; the next job that reads the file does, and its command repairs it."""
     results = copy.folder / "results/tiny"
@@ -107,7 +105,6 @@ def test_the_claims_and_the_report_stop_at_a_bad_file(copy, name, rule):
     assert [command.partition(" -R ")[2] for command in remedies(run.stderr)] == [f"results/tiny/{name}"]
 
 
-@pytest.mark.slow
 def test_damaged_and_lost_texts_and_pictures_are_made_again(copy, finished):
     """No job needs to read them; the next run checks them itself, and keeps what it replaces."""
     results = copy.folder / "results/tiny"

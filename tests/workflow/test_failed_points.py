@@ -6,24 +6,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import yaml
 
 from burridge_knopoff import decode_flags
 from burridge_knopoff.figures.mean_distance import draw
-from tests.small_study import run_study
-from tests.workflow.conftest import LIMITS
+from tests.small_study import opened
 
 
 @pytest.fixture(scope="module")
-def summaries(tmp_path_factory):
-    """The summaries with a status, made by the jobs of the study in this process."""
-    folder = tmp_path_factory.mktemp("limits")
-    return run_study(
-        folder / "results/limits", yaml.safe_load(LIMITS), ("attractors", "mean_distance", "lyapunov", "agreement")
-    ).summaries
+def summaries(limited):
+    return opened(limited.folder / "results/limits").summaries
 
 
-@pytest.mark.slow
 def test_the_study_ends_and_its_last_lines_count_them(limited):
     path = "results/limits/summary/mean_distance.nc"
     assert f"points: 2 of 8 did not complete: diverged 2 (status in {path})" in limited.output
@@ -49,7 +42,6 @@ def test_a_figure_leaves_a_gap(summaries):
     assert any(np.isfinite(y[0]) and np.isnan(y[1]) for y in drawn)
 
 
-@pytest.mark.slow
 def test_the_check_distinguishes_them_from_errors(limited):
     command = [str(Path(sys.executable).parent / "bk"), "check", "results/limits"]
     run = subprocess.run(command, cwd=limited.folder, capture_output=True, text=True)
@@ -60,7 +52,6 @@ def test_the_check_distinguishes_them_from_errors(limited):
     assert lines[-1].endswith("0 missing, 0 corrupt, 0 stale, 4 failed")
 
 
-@pytest.mark.slow
 def test_the_report_shows_them(limited):
     page = (limited.folder / "results/limits/report.html").read_text()
     assert "diverged" in page

@@ -60,6 +60,7 @@ def laws(tmp_path_factory):
     return study.folder / "results" / "laws"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("law", DESCRIPTIONS)
 def test_points_of_four_laws(laws, law):
     from burridge_knopoff.model.initial import PAPER_STATES
@@ -72,6 +73,7 @@ def test_points_of_four_laws(laws, law):
         check_point(laws / f"points/{law}/plus/a{a:.4f}.nc", model, PAPER_STATES["plus"], settings)
 
 
+@pytest.mark.slow
 def test_a_summary_has_the_laws_in_the_order_of_the_config(laws):
     import xarray as xr
 
@@ -84,6 +86,7 @@ def test_a_summary_has_the_laws_in_the_order_of_the_config(laws):
         assert summary["law"].values[failed].tolist() == ["linearized"]
 
 
+@pytest.mark.slow
 def test_another_parameter_of_one_law_recomputes_its_points_only(laws):
     study = Study(laws.parent.parent, FOUR_LAWS.replace('"sigma": 0.01', '"sigma": 0.02'))
     planned = study.ok("-n", "-p", "points")

@@ -177,6 +177,7 @@ def test_a_dry_run_ends_with_a_table_of_its_stages(study):
     assert not any(line.startswith(("Job ", "Job stats", "Reasons")) for line in lines)
 
 
+@pytest.mark.slow
 def test_values_that_change_results_in_place_are_announced(study):
     """They are announced until the results have these values, but not for a study of another name."""
     line = "--config window: results/tiny will hold the results of the changed config in place of those of "
@@ -200,6 +201,7 @@ def test_a_report_before_a_run_is_refused_in_a_line(study):
     assert "Missing metadata" not in run.stderr
 
 
+@pytest.mark.slow
 def test_without_hooks(study):
     output = study.ok("--no-hooks", POINTS[0])
     assert "study tiny" not in output

@@ -8,7 +8,6 @@ import xarray as xr
 from tests.workflow.conftest import TINY, Study
 
 
-@pytest.mark.slow
 def test_the_target_makes_its_files_and_nothing_else(finished, study):
     study.ok("proof", cores=1)
     files = study.files("points", "summary", "figures")
@@ -41,6 +40,7 @@ def test_it_depends_on_the_model_alone(copy):
     assert re.search(r"^proof +1$", copy.ok("proof", "-n", "-p", "--quiet", "rules"), re.MULTILINE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "other",
     [

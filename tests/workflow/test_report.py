@@ -85,7 +85,6 @@ def test_the_zip_contains_the_same_files(finished, tmp_path):
     assert sorted(names) == sorted(["report.html", *(name for names in CATEGORIES.values() for name in names)])
 
 
-@pytest.mark.slow
 @needs("BK_CHROMIUM")
 def test_a_browser_without_a_network_shows_it(report):
     with sync_playwright() as playwright:

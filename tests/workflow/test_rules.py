@@ -4,6 +4,7 @@ import pytest
 
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.stages import STAGES
+from tests.conftest import some
 from tests.workflow.planned import planned
 
 STATES = {"minus": {}, "plus": {}}
@@ -20,16 +21,19 @@ def whole():
 
 @pytest.mark.parametrize(
     ("config", "missing"),
-    [
-        ({}, {"catalogue", "edges"}),
-        ({"catalogue": {}, "edges": {}}, set()),
-        ({"without": ["solvers", "claims"]}, {"solvers", "claims", "catalogue", "edges"}),
-        ({"without": ["attractors"]}, {"attractors", "bifurcations", "basins", "phases", "catalogue", "edges"}),
-        ({"laws": {"linearized": {}}}, {"two_blocks", "catalogue", "edges"}),
-        ({"a": [0.31]}, {"basins", "phases", "catalogue", "edges"}),
-        ({"laws": {"stribeck": {}, "exponential": {}}}, {"proof", "catalogue", "edges"}),
-        ({"chain": {"threshold": [1.0, 1.1, 1.2]}}, {"two_blocks", "proof", "phases", "catalogue", "edges"}),
-    ],
+    some(
+        [
+            ({}, {"catalogue", "edges"}),
+            ({"catalogue": {}, "edges": {}}, set()),
+            ({"without": ["solvers", "claims"]}, {"solvers", "claims", "catalogue", "edges"}),
+            ({"without": ["attractors"]}, {"attractors", "bifurcations", "basins", "phases", "catalogue", "edges"}),
+            ({"laws": {"linearized": {}}}, {"two_blocks", "catalogue", "edges"}),
+            ({"a": [0.31]}, {"basins", "phases", "catalogue", "edges"}),
+            ({"laws": {"stribeck": {}, "exponential": {}}}, {"proof", "catalogue", "edges"}),
+            ({"chain": {"threshold": [1.0, 1.1, 1.2]}}, {"two_blocks", "proof", "phases", "catalogue", "edges"}),
+        ],
+        3,
+    ),
 )
 def test_the_stages_of_a_study(config, missing):
     study = planned({**CONFIG, **config})
@@ -45,7 +49,7 @@ def test_stages_that_are_left_out_have_no_values_of_a():
     assert study.omitted_stages == ("attractors", "bifurcations", "edges", "basins", "phases", "solvers")
 
 
-@pytest.mark.parametrize("stage", STAGES)
+@pytest.mark.parametrize("stage", some(STAGES, 2))
 def test_leaving_out_a_stage_leaves_out_what_needs_its_results(stage):
     refused = {*planned({**CONFIG, **WHOLE, "without": [stage]}, "points").refusals}
     assert refused & {*STAGES} == {stage, *(other for other, needed in STAGES.items() if needed == stage)}
@@ -57,6 +61,7 @@ def test_figures_of_a_study_without_attractors():
     assert not {"figure_bifurcations", "figure_branches_reached", "figure_attractor_kinds"} & there
 
 
+@pytest.mark.slow
 def test_longer_chains_are_made_on_request_or_if_the_config_lists_them(whole):
     files = {"summary/chains.nc", "figures/chains.pdf", "figures/chains.png", "chains/blocks2.nc"}
     by_name = planned(CONFIG)
@@ -93,22 +98,16 @@ def test_jobs_wait_only_for_their_inputs(whole):
     assert [*solvers.inputs["points"]] == expected
 
 
-#: {change of a config: rules whose params it changes}
+#: {change of a config: rules whose params it changes}, of stages that the study of test_changes.py lacks.
 CHANGES = [
-    ({"basins": {"pixels": 8}}, {"basin_tile", "basins"}),
-    ({"basins": {"pairs": 8}}, {"basin_pairs", "basins"}),
-    ({"basins": {"threads": 3}}, set()),
-    ({"phases": {"samples": 8}}, {"phases_of_law"}),
-    ({"agreement": {"standard_errors": 2}}, {"agreement", "two_blocks"}),
     ({"catalogue": {"low": -1.0}}, {"catalogue"}),
     ({"catalogue": {"window": 100.0}}, {"catalogue_of_run"}),
     ({"chains": {"blocks": [2, 3], "time_limit": 500}}, {"watch_chain"}),
-    ({"solvers": {"step": 0.002}}, {"solvers"}),
     ({"edges": {"samples": 50}}, {"edges_of_law"}),
 ]
 
 
-@pytest.mark.parametrize(("change", "rules"), CHANGES)
+@pytest.mark.parametrize(("change", "rules"), some(CHANGES, 1))
 def test_a_key_is_a_param_of_what_uses_it_and_of_nothing_else(whole, change, rules):
     other = {job.output: job for job in planned({**CONFIG, **WHOLE, **change}).jobs if "config" in job.params}
     before = {job.output: job for job in whole.jobs if "config" in job.params}

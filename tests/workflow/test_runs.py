@@ -17,7 +17,7 @@ def jobs(output):
     return {rule: int(count) for rule, count in (line.split() for line in table[1].splitlines())} if table else {}
 
 
-@pytest.mark.parametrize("other", ["Snakefile", pytest.param("workflow/Snakefile", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("other", ["Snakefile", "workflow/Snakefile"])
 def test_nothing_to_do_with_the_snakefile_by_another_path(finished, other):
     """Messages name the Snakefile relative to the current folder; the other path is that of the workflow catalog."""
     snakefile = str(finished.repository / "Snakefile")
@@ -27,7 +27,6 @@ def test_nothing_to_do_with_the_snakefile_by_another_path(finished, other):
     assert "Nothing to be done" in run.stdout + run.stderr
 
 
-@pytest.mark.slow
 def test_the_same_bytes_on_one_core_and_in_a_second_checkout(limited, tmp_path, repository, monkeypatch):
     """Points, summaries, and figures of both kinds; the kernel is copied (benchmarks/faults.py compiles it)."""
     # The order of iteration over sets differs.
@@ -80,6 +79,7 @@ rule mine:
 """
 
 
+@pytest.mark.slow
 def test_another_workflow_imports_the_study(tmp_path):
     """Its config contains other keys too."""
     study = Study(tmp_path, "mine: 3\nstick_slip:\n" + "".join(f"  {line}\n" for line in TINY.splitlines()))
@@ -139,25 +139,11 @@ def test_one_rule_again(copy):
     assert planned["agreement"] == planned["figure_agreement"] == 1
 
 
-def test_a_key_of_the_summaries_reruns_no_simulation(copy):
-    copy.config.write_text(TINY + "synchronization_threshold: 0.01\n")
-    planned = jobs(copy.ok("-n", "-p"))
-    assert "simulate" not in planned
-    assert "bifurcation_diagram" not in planned
-    assert {"mean_distance", "agreement", "figure_mean_distance", "figure_agreement"} <= set(planned)
-
-
-def test_a_key_of_the_simulations_reruns_them(copy):
-    copy.config.write_text(TINY + "sampling: 2\n")
-    assert jobs(copy.ok("-n", "-p"))["simulate"] == 16
-
-
 def test_a_wider_grid_keeps_existing_points(copy):
     copy.config.write_text(TINY.replace("[0.05,", "[0.05, 0.06,"))
     assert jobs(copy.ok("-n", "-p"))["simulate"] == 4
 
 
-@pytest.mark.slow
 def test_only_new_values_of_a_wider_grid_are_searched(copy):
     """Cached results of the first run are reused, and those that no value needs are deleted."""
     law, values = "linearized", 4
