@@ -71,7 +71,7 @@ ENDS = {
     "event_window": [0],
     "without": [["attractors"], ["bifurcations"], ["basins", "phases"], ["solvers", "two_blocks"], ["claims"]],
     "motion": [{"longest_period": 1}, {"zero_exponent": 0.0, "chaotic_exponent": 0.0}],
-    "basins": [{"pixels": 1, "pairs": 0, "tiles": 1}, {"a": {}}],
+    "basins": [{"pixels": 1, "pairs": 0, "tiles": 1}, {**BASE["basins"], "a": {}}],
 }
 
 #: Each has found a fault: no exponents, few events, chains of other lengths, many states.
