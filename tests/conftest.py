@@ -26,12 +26,12 @@ settings.load_profile("study")
 
 
 #: Fixtures for which the real Snakefile runs a study with attractors, or to its end.
-STUDIES = {"finished", "limited", "small_studies", "poor", "plane"}
+WHOLE_STUDIES = {"finished", "limited", "small_studies", "poor", "plane"}
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
     """Mark the tests that need such a study as slow; others run the Snakefile for some files or plan its jobs."""
-    if not STUDIES.isdisjoint(item.fixturenames):
+    if not WHOLE_STUDIES.isdisjoint(item.fixturenames):
         item.add_marker(pytest.mark.slow)
 
 
@@ -55,7 +55,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items[:] = [*slurm, *short[:half], *slow, *workflow, *short[half:]]
 
 
-def some(cases: Iterable[Any], count: int) -> list[Any]:
+def quick_first(cases: Iterable[Any], count: int) -> list[Any]:
     """Return cases of a test as parameters, all except the first few marked as slow: they take the same path."""
     values = [case if isinstance(case, tuple) else (case,) for case in cases]
     return [pytest.param(*case, marks=pytest.mark.slow if n >= count else ()) for n, case in enumerate(values)]
@@ -102,7 +102,7 @@ def small_studies(tmp_path_factory: pytest.TempPathFactory, request: pytest.Fixt
 
     "paper" is the finished study.
     """
-    from tests.small_study import SMALL, STUDIES, opened, run_study
+    from tests.small_study import SMALL, STUDIES, open_small_study, run_study
 
     def make(name: str, folder: Path) -> None:
         small = run_study(folder / "results" / name, {**SMALL, "study": name, **STUDIES[name]}, ("summary",))
@@ -112,7 +112,7 @@ def small_studies(tmp_path_factory: pytest.TempPathFactory, request: pytest.Fixt
     @cache
     def small_study(name: str):
         if name == "paper":
-            return opened(request.getfixturevalue("finished").folder / "results/tiny")
+            return open_small_study(request.getfixturevalue("finished").folder / "results/tiny")
         folder = made_once(tmp_path_factory, name, lambda folder: make(name, folder))
         return pickle.loads((folder / "study.pickle").read_bytes())
 

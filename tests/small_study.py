@@ -111,7 +111,7 @@ class SmallStudy:
         )
 
 
-def opened(results: Path) -> SmallStudy:
+def open_small_study(results: Path) -> SmallStudy:
     """Return a study that has run."""
     return SmallStudy(recorded_study(results)[1], results)
 

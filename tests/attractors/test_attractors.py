@@ -20,7 +20,7 @@ from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.motion.observables import is_on_attractor
 from burridge_knopoff.motion.section_returns import visit
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
-from tests.conftest import some
+from tests.conftest import quick_first
 
 SYNCHRONIZED, SYMMETRIC, ASYMMETRIC = Symmetry
 SETTINGS = SearchSettings(transient=2000.0, window=1500.0, seed=3, perturbations=8)
@@ -245,7 +245,7 @@ def test_orbits_to_which_perturbations_return_quickly_are_not_a_slow_set():
 
 @pytest.mark.parametrize(
     "found_model",
-    some(
+    quick_first(
         [
             Model(Chain(3, coupling=(1.0, 1.3), threshold=(1.0, 0.9, 1.1)), law_of("nonlinear", 0.1)),
             Model(Chain(3), law_of("stribeck", 0.1)),

@@ -10,13 +10,13 @@ from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.kind import motion_of_run
 from burridge_knopoff.motion.settings import MOTION
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
-from tests.conftest import some
+from tests.conftest import quick_first
 from tests.flows import weakly_repelling
 
 
 @pytest.mark.parametrize(
     ("law", "a", "kind", "points", "period"),
-    some(
+    quick_first(
         [
             ("linearized", 0.0775, "QUASIPERIODIC", 0, 2424.83),
             ("linearized", 0.08, "PERIODIC", 48, 157.245),
@@ -39,7 +39,7 @@ def test_motion_locked_to_a_period_longer_than_any_run_is_not_periodic(law, a, k
 
 @pytest.mark.parametrize(
     ("law", "a", "coupling", "blocks", "mean"),
-    some(
+    quick_first(
         [
             ("linearized", 0.2, 1e-6, 2, None),
             ("nonlinear", 0.3, 1e-5, 2, 0.284064),

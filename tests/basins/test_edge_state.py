@@ -25,7 +25,7 @@ from burridge_knopoff.basins.edge_state import _leads_back
 from burridge_knopoff.basins.edge_tracking import EdgeTrack
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
-from tests.conftest import some
+from tests.conftest import quick_first
 from tests.scipy_flow import model_events
 
 FEW = EdgeSettings(samples=100)
@@ -126,7 +126,7 @@ def test_states_exactly_between_mirror_images_reach_neither(between_mirror_image
 
 @pytest.mark.parametrize(
     ("a", "start", "stops", "saddle_stops", "crosses"),
-    some(
+    quick_first(
         [
             (0.23, InitialState("near", (-0.707, -0.645, -0.74), (0.0, 0.04, 0.043)), (1, 2, 1), (1, 1, 1), False),
             # Stable and unstable orbits are born together at a grazing.

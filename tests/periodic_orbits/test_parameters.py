@@ -29,7 +29,7 @@ from burridge_knopoff import (
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.periodic import find_periodic_orbit
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import bifurcations_of, critical_a
-from tests.conftest import some
+from tests.conftest import quick_first
 from tests.refused import refused
 
 #: a_c of the paper's chain, from interval arithmetic.
@@ -108,7 +108,7 @@ def check_curve(bifurcation, kind, parameter, a, accuracy):
 
 
 @pytest.mark.parametrize("parameter", ["damping", "pulling_damping", "pulling_damping[2]"])
-@pytest.mark.parametrize("first", some([False, True], 1))
+@pytest.mark.parametrize("first", quick_first([False, True], 1))
 def test_curves_begin_at_0(parameter, first):
     """The parameter is either of the two of the curve; along it no root is bracketed at 0."""
     start = MODEL.at(**{parameter: 0.0})

@@ -9,7 +9,7 @@ import pytest
 
 from burridge_knopoff import simulate
 from burridge_knopoff.running import runner
-from tests.conftest import some
+from tests.conftest import quick_first
 
 SINGLE = """
 from burridge_knopoff import Chain, simulate
@@ -33,7 +33,7 @@ PROGRAMS = {
 }
 
 
-@pytest.mark.parametrize("program", some(PROGRAMS, 1))
+@pytest.mark.parametrize("program", quick_first(PROGRAMS, 1))
 def test_ctrl_c_ends_a_long_chain_at_once(program):
     """It took 151 s when a call of the kernel was limited only by its number of steps."""
     process = subprocess.Popen(

@@ -14,7 +14,7 @@ from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.yaml_file import read_config
-from tests.conftest import some
+from tests.conftest import quick_first
 from tests.flows import carry, check_events, listed, wave
 from tests.refused import refused
 from tests.scipy_flow import model_events, scipy_events
@@ -54,7 +54,7 @@ def carlson_langer(a):
 
 @pytest.mark.parametrize(
     ("model", "a", "end", "least", "tolerance"),
-    some(
+    quick_first(
         [
             # Chaos: errors grow by a factor of e in about ten units of time.
             (carlson_langer, 2.0, 100.0, 40, 1e-6),

@@ -9,12 +9,12 @@ import pytest
 
 from burridge_knopoff import decode_flags
 from burridge_knopoff.figures.mean_distance import draw
-from tests.small_study import opened
+from tests.small_study import open_small_study
 
 
 @pytest.fixture(scope="module")
 def summaries(limited):
-    return opened(limited.folder / "results/limits").summaries
+    return open_small_study(limited.folder / "results/limits").summaries
 
 
 def test_the_study_ends_and_its_last_lines_count_them(limited):

@@ -4,7 +4,7 @@ import pytest
 
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.stages import STAGES
-from tests.conftest import some
+from tests.conftest import quick_first
 from tests.workflow.planned import planned
 
 STATES = {"minus": {}, "plus": {}}
@@ -21,7 +21,7 @@ def whole():
 
 @pytest.mark.parametrize(
     ("config", "missing"),
-    some(
+    quick_first(
         [
             ({}, {"catalogue", "edges"}),
             ({"catalogue": {}, "edges": {}}, set()),
@@ -49,7 +49,7 @@ def test_stages_that_are_left_out_have_no_values_of_a():
     assert study.omitted_stages == ("attractors", "bifurcations", "edges", "basins", "phases", "solvers")
 
 
-@pytest.mark.parametrize("stage", some(STAGES, 2))
+@pytest.mark.parametrize("stage", quick_first(STAGES, 2))
 def test_leaving_out_a_stage_leaves_out_what_needs_its_results(stage):
     refused = {*planned({**CONFIG, **WHOLE, "without": [stage]}, "points").refusals}
     assert refused & {*STAGES} == {stage, *(other for other, needed in STAGES.items() if needed == stage)}
@@ -107,7 +107,7 @@ CHANGES = [
 ]
 
 
-@pytest.mark.parametrize(("change", "rules"), some(CHANGES, 1))
+@pytest.mark.parametrize(("change", "rules"), quick_first(CHANGES, 1))
 def test_a_key_is_a_param_of_what_uses_it_and_of_nothing_else(whole, change, rules):
     other = {job.output: job for job in planned({**CONFIG, **WHOLE, **change}).jobs if "config" in job.params}
     before = {job.output: job for job in whole.jobs if "config" in job.params}
