@@ -56,7 +56,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def quick_first(cases: Iterable[Any], count: int) -> list[Any]:
-    """Return cases of a test as parameters, all except the first few marked as slow: they take the same path."""
+    """Return cases of a test as parameters, all except the first few marked as slow."""
     values = [case if isinstance(case, tuple) else (case,) for case in cases]
     return [pytest.param(*case, marks=pytest.mark.slow if n >= count else ()) for n, case in enumerate(values)]
 

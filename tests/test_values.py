@@ -55,7 +55,7 @@ def endless():
 
 
 @given(VALUES)
-@examples(150)
+@examples(500)
 def test_values_are_shown_as_python_writes_them_long_ones_shortened(value):
     text, whole = format_value(value), " ".join(repr(value).split())
     assert text.isprintable()
@@ -65,7 +65,7 @@ def test_values_are_shown_as_python_writes_them_long_ones_shortened(value):
 
 
 @given(st.text(), st.text())
-@examples(100)
+@examples(300)
 def test_a_key_is_one_line(key, name):
     text = full_key("laws", name)
     assert text.isprintable()

@@ -268,10 +268,9 @@ def three_laws() -> Summaries:
 
 @pytest.mark.parametrize("name", CLAIMS)
 def test_an_additional_law_changes_no_verdict(three_laws: Summaries, name: str) -> None:
-    world = dict(three_laws)
     laws = {"linearized": {}, "nonlinear": {}, "stribeck": {}}
-    assert judge_claim(name, evidence(world, laws=laws)) == judge_claim(name, evidence(paper_world()))
-    first = judge_claim(name, evidence(world, laws={"stribeck": {}, **laws}))
+    assert judge_claim(name, evidence(three_laws, laws=laws)) == judge_claim(name, evidence(paper_world()))
+    first = judge_claim(name, evidence(three_laws, laws={"stribeck": {}, **laws}))
     compared = name in ("laws_agree", "laws_agree_in_kind", "two_blocks_agree")
     assert first.verdict == (NOT_TESTABLE if compared else HOLDS)
     assert ("compared with its first one, the stribeck law" in first.reason) == compared

@@ -55,7 +55,7 @@ def damped(draw):
 
 
 @given(damped())
-@settings(max_examples=40)
+@settings(max_examples=60)
 def test_events_against_scipy(drawn):
     model, (stiffness, damping), start = drawn
     offset = np.linalg.solve(stiffness, np.full(model.blocks, -float(model.law(model.v))))

@@ -122,6 +122,8 @@ def change_config(edited, changes):
         # Snakemake compares the values of params without their names: two values are swapped, and one set to the other.
         {"transient": 200, "window": 100},
         {"transient": 200},
+        {"motion.zero_exponent": 1e-3, "motion.chaotic_exponent": 5e-4},
+        {"motion.zero_exponent": 1e-3},
     ],
 )
 def test_a_key_invalidates_only_what_uses_it(edited, before, changes):
