@@ -5,9 +5,9 @@ First, chains that start near uniform sliding, which is unstable, with all event
 computes once in a run; from N = 64 on these take a large part of such short runs.
 
 Then chains of the earthquake literature (Carlson and Langer): stiff springs, friction that drops at the start of a slip
-and weakens with speed. They start at rest with nearly equal positions. After the first slips, runs in groups, as a
-whole, with a catalogue of slip events and under quasi-static loading continue alternately from the same state without
-observables; the table has the CPU time of each run divided by its number of events.
+and weakens with speed. They start at rest with nearly equal positions. After the first slips, runs in groups, with
+Lyapunov exponents, with a catalogue of slip events, under quasi-static loading and as a whole continue alternately from
+the same state without observables; the table has the CPU time of each run divided by its number of events.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from measure import cpu_times, print_table
 
 from burridge_knopoff import Chain, ChainState, InitialState, Model, law_of, simulate
 from burridge_knopoff.catalogue.events import MOST_EVENTS
-from burridge_knopoff.kernel._core import Catalogue
+from burridge_knopoff.kernel._core import Catalogue, Exponents
 from burridge_knopoff.running.runner import Runner
 
 A = 0.08
@@ -118,12 +118,20 @@ def settled(model: Model) -> ChainState:
 
 
 def per_event(
-    model: Model, start: ChainState, wanted: int, *, groups: bool = True, record: bool = False, loading: str = "steady"
+    model: Model,
+    start: ChainState,
+    wanted: int,
+    *,
+    groups: bool = True,
+    record: bool = False,
+    loading: str = "steady",
+    exponents: int = 0,
 ) -> tuple[float, int]:
     """Return the CPU time of an event in µs, and how many events were measured."""
     catalogue = Catalogue(model.blocks, 0.0, False, MOST_EVENTS) if record else None
-    runner = Runner(model, groups=groups, catalogue=catalogue, loading=loading)
-    runner.begin(start)
+    followed = Exponents(model.blocks, exponents, 0.0, np.array([0.0, np.inf]))
+    runner = Runner(model, groups=groups, catalogue=catalogue, loading=loading, exponents=followed)
+    runner.begin(start, 0.0)
     end, spent = 0.0, 0.0
     while runner.log.count < wanted:
         end += 0.05 / model.v
@@ -133,51 +141,36 @@ def per_event(
     return 1e6 * spent / runner.log.count, runner.log.count
 
 
+#: Runs of the second table. The first is the unit of the others.
+RUNS = {
+    "in groups": {},
+    "1 exponent": {"exponents": 1},
+    "4 exponents": {"exponents": 4},
+    "recorded": {"record": True},
+    "quasi-static": {"loading": "quasistatic"},
+    "quasi-static, 4 exponents": {"loading": "quasistatic", "exponents": 4},
+    "as a whole": {"groups": False},
+    "as a whole, 4 exponents": {"groups": False, "exponents": 4},
+}
+
+
 def by_groups(rounds: int) -> None:
-    """Print the CPU time of an event in groups, recorded, quasi-static, and of the chain as a whole."""
+    """Print the CPU time of an event in groups, and that of other runs relative to it."""
     rows = []
     for blocks, v, many, few in CASES:
         model = model_of(blocks, v)
         start = settled(model)
-        # In turn: in groups, recorded, quasi-static, as a whole.
+        wanted = {name: many if settings.get("groups", True) else few for name, settings in RUNS.items()}
         turns = [
-            (
-                per_event(model, start, many),
-                per_event(model, start, many, record=True),
-                per_event(model, start, many, loading="quasistatic"),
-                per_event(model, start, few, groups=False) if few else None,
-            )
+            {name: per_event(model, start, wanted[name], **RUNS[name])[0] for name in RUNS if wanted[name]}
             for _ in range(rounds)
         ]
-        bare, recorded, still, other = (
-            min(timing[0] for timing in column if timing) if column[0] else None for column in zip(*turns, strict=True)
-        )
-        rows.append(
-            [
-                blocks,
-                v,
-                f"{bare:.2f}",
-                f"{recorded / bare:.2f}",
-                f"{still / bare:.2f}",
-                "" if other is None else f"{other:.1f}",
-                "" if other is None else f"{other / bare:.1f}",
-                turns[0][0][1],
-            ]
-        )
-    print(f"\nStiffness {COUPLING:g}, a = {LARGE_A:g}, σ = {SIGMA:g}.\n")
-    print_table(
-        [
-            "N",
-            "v",
-            "in groups, µs/event",
-            "recorded, ratio",
-            "quasi-static, ratio",
-            "as a whole, µs/event",
-            "ratio",
-            "events",
-        ],
-        rows,
-    )
+        least = {name: min(turn[name] for turn in turns) for name in turns[0]}
+        bare = least.pop("in groups")
+        ratios = [f"{least[name] / bare:.2f}" if name in least else "" for name in list(RUNS)[1:]]
+        rows.append([blocks, v, f"{bare:.2f}", *ratios])
+    print(f"\nStiffness {COUPLING:g}, a = {LARGE_A:g}, σ = {SIGMA:g}. Ratios are those to a run in groups.\n")
+    print_table(["N", "v", "in groups, µs/event", *list(RUNS)[1:]], rows)
 
 
 def main() -> None:

@@ -21,9 +21,18 @@ constexpr double NEVER = 1e300;
 // edge : boundaries of the batches
 // at_rest : whether the perturbations are orthonormalised whenever a block starts after all blocks were stuck. A batch
 //     whose edges lie in times of rest then contains whole slips. Its growth depends on no unit: all velocities are 0
+//
+// In a run in groups, the pieces of the motion begin and end at different times, and so do the perturbations of their
+// blocks. Such a set of perturbations determines the set at one instant. It is orthonormalised as it is: linear
+// combinations are the same at all times, and the growth between two instants does not depend on what is done between
+// them. Only the edges of batches need one instant.
 class Exponents {
   public:
+    static constexpr int LANES = Blocks::LANES;
+
     Tangent<Blocks> tangent;
+    // The perturbations of the blocks of one group, which are propagated together.
+    Tangent<Blocks> in_group;
     const int blocks;
     bool running = false;
     int alive = 0, most_stuck = 0;
@@ -38,20 +47,64 @@ class Exponents {
     const double start_time;
 
     Exponents(int blocks, int vectors, double start_time, std::vector<double> edges, bool at_rest)
-        : tangent((blocks + Blocks::LANES - 1) / Blocks::LANES, vectors), blocks(blocks),
+        : tangent((blocks + LANES - 1) / LANES, vectors), in_group(1, vectors), blocks(blocks),
           growth((edges.size() - 1) * vectors), duration(edges.size() - 1), at_rest(at_rest),
           start_time(vectors > 0 ? start_time : NEVER), edge(std::move(edges)), batches(int(edge.size()) - 1),
-          whole(vectors), product(vectors, 1.0) {}
+          whole(vectors), product(vectors, 1.0), deceleration(blocks), lost_speed(size_t(vectors) * blocks) {}
 
-    double *x(int v) { return &tangent.position.lane(size_t(v) * tangent.columns * Blocks::LANES); }
-    double *u(int v) { return &tangent.velocity.lane(size_t(v) * tangent.columns * Blocks::LANES); }
+    double *x(int v) { return &tangent.position.lane(size_t(v) * tangent.columns * LANES); }
+    double *u(int v) { return &tangent.velocity.lane(size_t(v) * tangent.columns * LANES); }
+
+    // Whether perturbations are only propagated, and not orthonormalised.
+    bool is_carried() const { return tangent.vectors > 0 && start_time >= NEVER; }
 
     // Propagate perturbations from now on without orthonormalisation.
     void carry() {
-        tangent.forget_stops(Blocks::all_lanes(true));
+        forget_stops();
         running = true;
         due = NEVER;
         most_stuck = blocks;
+    }
+
+    // Map the perturbations through the stop or start that block i, in a lane of a state, is about to make.
+    void change(State<Blocks> &state, const Springs &springs, int i, int lane) {
+        const Blocks &layout = state.layout;
+        const int c = lane / LANES, own = lane % LANES;
+        const Blocks::vec force = state.force(c);
+        if (state.slip.lane(lane) != 0.0) {
+            deceleration[i] = state.slip_acceleration(c, force)[own];
+            stopped.push_back(i);
+            for (int v = 0; v < tangent.vectors; v++) {
+                lost_speed[size_t(v) * blocks + i] = u(v)[i];
+                u(v)[i] = 0.0;
+            }
+            return;
+        }
+        const double sign = force[own] > 0.0 ? 1.0 : -1.0;
+        if (deceleration[i] != 0.0) {
+            const double friction = sign * (layout.threshold.lane(lane) * layout.at_rest);
+            const double factor = (force[own] - friction) / layout.mass.lane(lane) / deceleration[i];
+            for (int v = 0; v < tangent.vectors; v++) u(v)[i] = factor * lost_speed[size_t(v) * blocks + i];
+            return;
+        }
+        if (!layout.drops) return;
+        state.measure();
+        const double rate = state.force_rate(c)[own];
+        // If the driver does not move, the perturbed block starts at the same time: the driver has advanced less or
+        // more.
+        if (!(bits(state.at_threshold(c, force)) >> own & 1) || rate == 0.0) return;
+        const double factor = sign * state.start_acceleration(c)[own] / rate;
+        for (int v = 0; v < tangent.vectors; v++) {
+            double change = springs.pull(x(v), i);
+            if (springs.damped) change += springs.drag(u(v), i);
+            u(v)[i] = factor * change;
+        }
+    }
+
+    // Discard what stops have removed, when time advances.
+    void forget_stops() {
+        for (int i : stopped) deceleration[i] = 0.0;
+        stopped.clear();
     }
 
     // slip : directions in which the blocks slip, 0 for those that stick
@@ -70,15 +123,17 @@ class Exponents {
 
     // Orthonormalise the perturbations if this is due, after all changes at this instant.
     void follow(const double *slip, double clock, bool completed) {
-        const int now = stuck(slip);
-        if (now > most_stuck) {
-            most_stuck = now;
-            if (alive > 2 * blocks - now) {
-                alive = 2 * blocks - now;
-                orthonormalise(true);
-            }
-        }
+        lose(stuck(slip));
         if (clock >= due || (completed && alive > 0)) renew(slip, clock, completed);
+    }
+
+    // Drop the vectors that are lost while this many blocks stick.
+    void lose(int now) {
+        if (now <= most_stuck) return;
+        most_stuck = now;
+        if (alive <= 2 * blocks - now) return;
+        alive = 2 * blocks - now;
+        orthonormalise(true);
     }
 
     // A block is about to start.
@@ -86,12 +141,68 @@ class Exponents {
         if (at_rest && running && alive > 0 && stuck(slip) == blocks) renew(slip, clock, false);
     }
 
+    // The end of the present batch, NEVER after the last one.
+    double next_edge() const { return batch < batches ? edge[batch + 1] : NEVER; }
+
+    // Orthonormalise, and advance to the batch that contains the present time.
+    void renew(const double *slip, double clock, bool completed) {
+        orthonormalise(true);
+        due = clock + interval;
+        while (batch < batches && (clock >= edge[batch + 1] || (completed && batch == batches - 1))) {
+            if (batch >= 0) {
+                duration[batch] = clock - batch_start;
+                for (int c = 0; c < alive; c++) collect(c);
+            } else {
+                // Blocks that were stuck in the transient only do not count for the window.
+                seed(slip, alive);
+            }
+            batch++;
+            batch_start = clock;
+        }
+    }
+
+    // Make the vectors orthonormal (modified Gram-Schmidt). kept : whether the vectors were orthonormal before; their
+    // lengths then count for the batch, and vectors from the first lost one on are dropped. Otherwise they are seeds
+    void orthonormalise(bool kept) {
+        for (int c = 0; c < alive; c++) whole[c] = dot(c, c);
+        for (int c = 0; c < tangent.vectors; c++) {
+            watch.worked((long long)blocks * std::max(alive - c, 1) / 8);
+            double factor = 0.0;
+            if (c < alive) {
+                const double square = c == 0 ? whole[0] : dot(c, c);
+                if (kept && square <= LOST * LOST * whole[c]) {
+                    alive = c;
+                } else {
+                    const double length = std::sqrt(square);
+                    factor = 1.0 / length;
+                    if (kept && counted()) {
+                        product[c] *= length;
+                        if (!(1e-100 < product[c] && product[c] < 1e100)) collect(c);
+                    }
+                }
+            }
+            double *x = this->x(c), *u = this->u(c);
+            for (int i = 0; i < blocks; i++) {
+                x[i] *= factor;
+                u[i] *= factor;
+            }
+            for (int d = c + 1; d < alive; d++) {
+                const double along = dot(c, d);
+                double *y = this->x(d), *w = this->u(d);
+                for (int i = 0; i < blocks; i++) {
+                    y[i] -= along * x[i];
+                    w[i] -= along * u[i];
+                }
+            }
+        }
+    }
+
     // Map the perturbations to the start of block i under quasi-static loading: the driver advances until s_i reaches
     // the threshold. creep : displacement of each block relative to that of the driver; rate : that of s_i
     //
     //     x_j → x_j + (1 − creep_j) δs_i/rate.
     void load_until_start(const Springs &springs, int i, const double *creep, double rate) {
-        tangent.forget_stops(Blocks::all_lanes(true));
+        forget_stops();
         for (int v = 0; v < tangent.vectors; v++) {
             const double less = springs.pull(x(v), i) / rate;
             for (int j = 0; j < blocks; j++) x(v)[j] += less * (1.0 - creep[j]);
@@ -120,6 +231,9 @@ class Exponents {
     double due = 0.0, batch_start = 0.0;
     // Products of lengths, whose logarithm is taken at the end of a batch, or before it could overflow.
     std::vector<double> whole, product;
+    // Of blocks that have stopped at this instant: their accelerations and velocity perturbations before.
+    std::vector<double> deceleration, lost_speed;
+    std::vector<int> stopped;
     Watch watch;
 
     bool counted() const { return batch >= 0 && batch < batches; }
@@ -148,62 +262,10 @@ class Exponents {
         return moved + unit * unit * sped;
     }
 
-    // Make the vectors orthonormal (modified Gram-Schmidt). kept : whether the vectors were orthonormal before; their
-    // lengths then count for the batch, and vectors from the first lost one on are dropped. Otherwise they are seeds
-    void orthonormalise(bool kept) {
-        const int n = blocks;
-        for (int c = 0; c < alive; c++) whole[c] = dot(c, c);
-        for (int c = 0; c < tangent.vectors; c++) {
-            watch.worked((long long)n * std::max(alive - c, 1) / 8);
-            double factor = 0.0;
-            if (c < alive) {
-                const double square = c == 0 ? whole[0] : dot(c, c);
-                if (kept && square <= LOST * LOST * whole[c]) {
-                    alive = c;
-                } else {
-                    const double length = std::sqrt(square);
-                    factor = 1.0 / length;
-                    if (kept && counted()) {
-                        product[c] *= length;
-                        if (!(1e-100 < product[c] && product[c] < 1e100)) collect(c);
-                    }
-                }
-            }
-            for (int i = 0; i < n; i++) {
-                x(c)[i] *= factor;
-                u(c)[i] *= factor;
-            }
-            for (int d = c + 1; d < alive; d++) {
-                const double along = dot(c, d);
-                for (int i = 0; i < n; i++) {
-                    x(d)[i] -= along * x(c)[i];
-                    u(d)[i] -= along * u(c)[i];
-                }
-            }
-        }
-    }
-
     // Add the growth of vector c since the last call to its batch.
     void collect(int c) {
         growth[size_t(batch) * tangent.vectors + c] += std::log(product[c]);
         product[c] = 1.0;
-    }
-
-    // Orthonormalise, and advance to the batch that contains the present time.
-    void renew(const double *slip, double clock, bool completed) {
-        orthonormalise(true);
-        due = clock + interval;
-        while (batch < batches && (clock >= edge[batch + 1] || (completed && batch == batches - 1))) {
-            if (batch >= 0) {
-                duration[batch] = clock - batch_start;
-                for (int c = 0; c < alive; c++) collect(c);
-            } else {
-                // Blocks that were stuck in the transient only do not count for the window.
-                seed(slip, alive);
-            }
-            batch++;
-            batch_start = clock;
-        }
     }
 };
 

@@ -21,6 +21,7 @@ struct Group {
     Clock start;            // of the present piece
     double length = 0.0;    // of the piece: until the next event, or as far as the series goes
     double observed = 0.0;  // time up to which the piece has been observed
+    double followed = 0.0;  // time of the piece to which the perturbations of its blocks belong
     bool planned = false, event = false;
     bool resting = false;  // whether the blocks stick or creep at the end of the piece, see Run::plan
     int section = -1;      // lane of W in g
@@ -53,7 +54,7 @@ struct Group {
         search.find(series, state, reach, Blocks::all_lanes(true), section);
         length = search.time[0];
         event = search.found[0];
-        observed = 0.0;
+        observed = followed = 0.0;
         planned = true;
         return true;
     }

@@ -32,6 +32,7 @@ int Run::run_groups() {
         now = observed;
         return DIVERGED;
     }
+    count_stuck();
     for (;;) {
         drop_void(queue);
         if (const int reason = blocked()) return reason;
@@ -40,14 +41,16 @@ int Run::run_groups() {
         if (!moving) drop_void(waiting);
         Queue &coming = moving ? queue : waiting;
         const Clock at = coming.empty() ? Clock{NEVER, 0.0} : coming.top().at;
+        const bool completed = (!moving || loading == 0.0) && at.until(end) < 0.0;
+        begin_exponents((moving ? now : load).until(completed ? Clock{end, 0.0} : at));
+        if (!moving || loading == 0.0) pass_edges(completed ? Clock{end, 0.0} : at, completed);
         if (!moving) {
-            if (at.until(end) < 0.0) {
-                load = {end, 0.0};
+            load = completed ? Clock{end, 0.0} : at;
+            if (completed) {
                 remember();
                 return COMPLETED;
             }
-            load = at;
-        } else if (loading == 0.0 && at.until(end) < 0.0) {
+        } else if (completed) {
             remember();
             observe_all({end, 0.0}, at.time < NEVER ? at : Clock{end, 0.0});
             for (auto &group : groups) {
@@ -63,6 +66,7 @@ int Run::run_groups() {
                              groups[group_of[halting_block]]->state.slip.lane(lane_of[halting_block]) != 0.0;
         if (moving) observe_all(at, at);
         if (!process()) return DIVERGED;
+        follow_groups();
         if (halting && direction_of(halting_block) == 0.0) return HALTED;
     }
 }
@@ -97,6 +101,7 @@ bool Run::process() {
     std::vector<int> changing = starting, members;
     int events = int(starting.size());
     Group *group = nullptr;
+    exponents.forget_stops();
     for (int number : ending) {
         Group &own = *groups[number];
         end_piece(own, own.length);
@@ -109,6 +114,7 @@ bool Run::process() {
     }
     bool moves = true;
     if (events > 0) {
+        load_exponents();
         if (events > 1 || !group) {
             for (int i : changing) {
                 gather(i, members);
@@ -249,6 +255,7 @@ void Run::end_piece(Group &group, double to) {
     if (!group.planned) return;
     if (observing && !observer.section_only) group.extremes(observer, polynomial, group.observed, to);
     if (observing && holds_end(group)) observe_distance(group.start.after(to));
+    if (exponents.running) propagate(group, to);
     group.advance(to);
     if (catalogue) group.record(*catalogue, polynomial, group.observed, to, true);
     group.observed = to;

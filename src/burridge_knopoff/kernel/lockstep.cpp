@@ -48,7 +48,7 @@ void Lockstep::enter(Run &run, int lane) {
     clock_rest[lane] = group.start.rest;
     end[lane] = run.end;
     since_event[lane] = run.since_event;
-    longest_follow[lane] = Run::LONGEST_FOLLOW * run.model.springs.unit;
+    longest_follow[lane] = Run::LONGEST_FOLLOW * run.follow_unit();
     observed[lane] = -int64_t(run.observing);
     averaged[lane] = -int64_t(run.observing && !run.observer.section_only);
     transient[lane] = run.observer.transient();

@@ -182,6 +182,7 @@ void Run::retire(Group &group) {
 bool Run::plan(Group &group) {
     steps++;
     watch.worked(group.size());
+    expanded = &group;
     const bool seen = observing && !local;
     if (!group.plan(seen ? observer.side : 0, first, last)) return false;
     if (loading > 0.0 && model.creep_speed > 0.0) end_at_rest(group);
@@ -192,10 +193,13 @@ bool Run::plan(Group &group) {
 void Run::change(Group &group, int lane, const Clock &at) {
     const int i = group.layout.member[lane];
     group.resting = false;
-    if (exponents.tangent.vectors > 0)
-        exponents.tangent.change(group.state, lane / LANES, Blocks::from_bits(1 << lane % LANES));
+    if (exponents.tangent.vectors > 0) exponents.change(group.state, model.springs, i, lane);
     const int kind = group.state.slip.lane(lane) == 0.0;
     group.state.transition(lane / LANES, Blocks::from_bits(1 << lane % LANES));
+    if (!directions.empty()) {
+        directions[i] = group.state.slip.lane(lane);
+        sticking += kind ? -1 : 1;
+    }
     if (catalogue && kind) catalogue->start(model.springs, i, at, loading_clock(at), group.state.position.lane(lane));
     if (catalogue && !kind)
         catalogue->stop(model.springs, model.v, loading, i, at, loading_clock(at), group.state.position.lane(lane));
@@ -332,7 +336,7 @@ int Run::run_whole() {
             advance(group, length);
         }
         // At events, so that all solvers orthonormalise at the same times.
-        if (exponents.running && (due || since_event >= LONGEST_FOLLOW * model.springs.unit))
+        if (exponents.running && (due || since_event >= LONGEST_FOLLOW * follow_unit()))
             exponents.follow(group.slip(), loading_clock(now).time, completed);
         if (completed) return COMPLETED;
         if (halting && group.state.slip.lane(halting_block) == 0.0) return HALTED;
@@ -429,7 +433,7 @@ void Run::observe(Group &group, double to) {
 
 // Propagate the perturbations along a piece, in parts after which they can be orthonormalised.
 void Run::follow(Group &group, double length) {
-    exponents.tangent.forget_stops(Blocks::all_lanes(true));
+    exponents.forget_stops();
     // Nothing changes while all blocks stick, however slow the driver is.
     if (exponents.stuck(group.slip()) == blocks) return;
     exponents.tangent.load(group.state, group.series, length, Blocks::all_lanes(true),

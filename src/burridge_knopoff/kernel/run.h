@@ -62,11 +62,16 @@ class Run {
   public:
     // Number of blocks from which on groups are faster than a single group.
     static constexpr int MANY = 24;
-    // Longest time, in units of the chain, between orthonormalisations, which are also needed without events.
+    // Longest time between orthonormalisations, which are also needed without events, in units of the shortest.
     static constexpr double LONGEST_FOLLOW = 4.0;
+    // Factor exp(−DECAY) by which dashpots may shorten a perturbation in the shortest time.
+    static constexpr double DECAY = 4.0;
     static constexpr int LANES = Blocks::LANES;
     // Number of unused groups whose memory is kept, in addition to the number in use.
     static constexpr size_t SPARE = 64;
+    // In a run in groups, perturbations are orthonormalised after one change for every so many blocks, and after so
+    // many parts of a piece, in each of which a vector may shrink by exp(−2.4); see Tangent.
+    static constexpr int BLOCKS_A_CHANGE = 128, PARTS = 4;
     using vec = Blocks::vec;
     using mask = Blocks::mask;
 
@@ -94,13 +99,13 @@ class Run {
     Run(const Model &model, EventLog &log, Observer &observer, Exponents &exponents, bool observing, int local,
         long long step_limit, double loading)
         : model(model), log(log), observer(observer), exponents(exponents), observing(observing),
-          local(exponents.tangent.vectors == 0 && (local < 0 ? model.springs.blocks >= MANY : local > 0)),
+          local(!exponents.is_carried() && (local < 0 ? model.springs.blocks >= MANY : local > 0)),
           step_limit(step_limit), loading(loading), end(observer.end()), blocks(model.springs.blocks),
           first(observer.section ? observer.section - 1 : 0),
           last(observer.section ? observer.section : model.springs.blocks), law(model.law, 1), alone(blocks),
           group_of(blocks, -1), lane_of(blocks, -1), version(blocks), row_of(blocks, -1), begins(blocks) {
         log.unit = model.springs.unit;
-        exponents.interval = loading > 0.0 ? 0.0 : model.springs.unit;
+        exponents.interval = loading > 0.0 ? 0.0 : follow_unit();
         exponents.unit = model.springs.unit;
     }
 
@@ -124,6 +129,12 @@ class Run {
     int run() {
         if (!settled) settle_first();
         return local ? run_groups() : run_whole();
+    }
+
+    // Shortest time between orthonormalisations: the unit of the chain, or less if dashpots are strong.
+    double follow_unit() const {
+        const Springs &springs = model.springs;
+        return springs.damping_rate * springs.unit > DECAY ? DECAY / springs.damping_rate : springs.unit;
     }
 
     // The loading clock at a time of the slip clock. Under steady loading the two are the same.
@@ -231,6 +242,22 @@ class Run {
     bool section_lanes(const Group &group, int &begin, int &stop) const;
     double section_range(const Group &group);
     bool holds_end(const Group &group) const;
+
+    // Lyapunov exponents of a run in groups, in local_exponents.cpp.
+    void count_stuck();
+    void begin_exponents(double length);
+    void load_exponents();
+    void follow_groups();
+    void pass_edges(const Clock &next, bool completed);
+    void propagate(Group &group, double to);
+    void exchange(const Group &group, bool out);
+    void restore_friction(const Group &group, double from);
+    // The directions in which all blocks slip, and how many stick.
+    std::vector<double> directions;
+    int sticking = 0;
+    // Instants at which the motion has changed since the last orthonormalisation.
+    int changes = 0;
+    const Group *expanded = nullptr;  // the group whose piece was expanded last
     double direction_of(int i) const {
         return group_of[i] < 0 ? alone[i].slip : groups[group_of[i]]->state.slip.lane(lane_of[i]);
     }

@@ -28,23 +28,32 @@ class Tangent {
     using Rows = typename L::Rows;
     using Number = typename L::Number;
 
-    const int vectors, columns;
+    const int vectors;
+    int columns;
     // Vector v has its blocks in the lanes of the columns from v · columns on.
     Rows position, velocity;
 
     // columns : of a state
-    Tangent(int columns, int vectors)
-        : vectors(vectors), columns(columns), position(size_t(vectors + 1) * columns),
-          velocity(size_t(vectors + 1) * columns), lost(size_t(vectors) * columns), deceleration(columns),
-          moving(columns), pull_scale(columns), rates(size_t(columns) * LENGTH),
-          speeds(size_t(columns) * LENGTH * TOGETHER), rows(size_t(columns) * TOGETHER), speed_rows(rows.size()) {}
+    Tangent(int columns, int vectors) : vectors(vectors) { widen(columns); }
+
+    // Set the number of columns; the contents are lost.
+    void widen(int count) {
+        columns = count;
+        for (Rows *row : {&position, &velocity}) row->reserve(size_t(vectors + 1) * count);
+        for (Rows *row : {&deceleration, &moving, &pull_scale}) row->reserve(count);
+        for (Rows *row : {&rows, &speed_rows}) row->reserve(size_t(count) * TOGETHER);
+        lost.reserve(size_t(vectors) * count);
+        rates.reserve(size_t(count) * LENGTH);
+        speeds.reserve(size_t(count) * LENGTH * TOGETHER);
+    }
 
     // Discard what stops have removed, when time advances or a run starts.
     void forget_stops(mask where) {
         for (int c = 0; c < columns; c++) deceleration[c] = select(where, vec{}, deceleration[c]);
     }
 
-    // Map the perturbations through the stops or starts that blocks of a column are about to make.
+    // Map the perturbations through the stops or starts that blocks of a column are about to make; `Exponents::change`
+    // does this for a single block.
     void change(State<L> &state, int c, mask where) {
         const L &layout = state.layout;
         const vec zero{}, force = state.force(c);

@@ -19,12 +19,11 @@ LONG = 60.0
 def cost_of(model: Model, begun: ChainState, settings: Settings) -> tuple[float, float]:
     """Return estimates of the CPU seconds per time unit and of the memory in bytes of a run with the solver series.
 
-    begun : state at the start. Without exponents the cost of an event is proportional to the number of blocks that slip
-        together; the blocks that slip at the start are assumed to keep slipping together
+    begun : state at the start. The cost of an event is proportional to the number of blocks that slip together; those
+        that slip at the start are assumed to keep slipping together
     """
-    exponents = settings.exponent_count(model.chain)
-    together = model.blocks if exponents else int((~begun.stuck).sum())
-    event = together * (SECONDS + exponents * SECONDS_OF_PERTURBATION)
+    together = int((~begun.stuck).sum())
+    event = together * (SECONDS + settings.exponent_count(model.chain) * SECONDS_OF_PERTURBATION)
     return max(EVENTS * model.blocks, _expansions(model.chain)) * event, BYTES * model.blocks
 
 
