@@ -20,7 +20,6 @@ container: "docker://python:3.11"
 
 include: "workflow/rules/study.smk"
 include: "workflow/rules/common.smk"
-include: "workflow/rules/groups.smk"
 include: "workflow/rules/points.smk"
 include: "workflow/rules/summaries.smk"
 include: "workflow/rules/attractors.smk"

@@ -12,121 +12,96 @@ from tests.workflow.conftest import REPOSITORY
 PROFILE = REPOSITORY / "workflow/profiles/slurm"
 PROGRAMS = ("jobs", "submit", "status")
 PROPERTIES = {"type": "single", "rule": "wait", "threads": 2, "resources": {"mem_mb": 10, "runtime": 1}}
-SCRIPT = f"""# properties = {json.dumps(PROPERTIES)}
-wait --target-jobs wait:a=1 --attempt 2 --snakefile {REPOSITORY}/workflow/Snakefile
-"""
 SILENT = (1, "", "sbatch: error: Batch job submission failed: Unable to contact slurm controller (connect failure)\n")
+REFUSED = (1, "", "sbatch: error: Batch job submission failed: Invalid partition name specified\n")
+FORGOTTEN = (1, "", "slurm_load_jobs error: Invalid job id specified\n")
 
 
 @pytest.fixture
-def slurm(monkeypatch, tmp_path):
-    """Return the programs as modules, in a folder with a job script, and a function that sets Slurm's answers.
+def call(monkeypatch, tmp_path, capsys):
+    """Return a function that calls a program in a folder with a job script; Slurm gives the answers in turn.
 
-    An answer is (exit code, output, error), or a function of the command that returns one.
+    An answer is (exit code, output, error), or a function of the command that returns one. The function returns the
+    exit code, the output, the error and the commands that Slurm got.
     """
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(PROFILE))
-    monkeypatch.setenv("BK_STUDY", "results/tiny 0123")
+    monkeypatch.setenv("BK_STUDY", "tiny")
     modules = {name: importlib.import_module(name) for name in PROGRAMS}
-    (tmp_path / "script.sh").write_text(SCRIPT)
     monkeypatch.setattr(modules["jobs"], "PAUSE", 0.0)
+    (tmp_path / "script.sh").write_text(f"# properties = {json.dumps(PROPERTIES)}\nsnakemake --attempt 2 --cores 1")
 
-    def script_answers(**answers):
-        """Let each program of Slurm give its answers in turn; return the list of commands."""
-        left, asked = {name: iter(replies) for name, replies in answers.items()}, []
+    def program(name, argument, *answers):
+        replies, asked = iter(answers), []
 
         def ask(*command, **_):
             asked.append(command)
-            answer = next(left[command[0]])
+            answer = next(replies)
             return subprocess.CompletedProcess(command, *(answer(command) if callable(answer) else answer))
 
         for module in modules.values():
             monkeypatch.setattr(module, "ask", ask)
-        return asked
+        monkeypatch.setattr(sys, "argv", [f"{name}.py", argument])
+        return modules[name].main(), *capsys.readouterr(), asked
 
-    yield modules, script_answers
+    yield program
     for name in PROGRAMS:
         del sys.modules[name]
 
 
-def submit_script(modules, monkeypatch, capsys):
-    """Submit the script; return the exit code, and what was written."""
-    monkeypatch.setattr(sys, "argv", ["submit.py", "script.sh"])
-    code = modules["submit"].main()
-    return code, *capsys.readouterr()
-
-
-def test_a_silent_controller_is_asked_again(slurm, monkeypatch, capsys):
-    modules, script_answers = slurm
-    none = (0, "", "")
-    asked = script_answers(squeue=[SILENT, none, none], sbatch=[SILENT, (0, "17;cluster\n", "")])
-    code, output, _ = submit_script(modules, monkeypatch, capsys)
-    number, _, name = output.strip().partition(":")
-    assert (code, number) == (0, "17")
-    assert [command[0] for command in asked] == ["squeue", "squeue", "sbatch", "squeue", "sbatch"]
+def test_a_silent_controller_is_asked_again(call):
+    code, output, _, asked = call("submit", "script.sh", SILENT, SILENT, (0, "", ""), (0, "17;cluster\n", ""))
+    assert (code, output) == (0, "17\n")
+    assert [command[0] for command in asked] == ["sbatch", "squeue", "squeue", "sbatch"]
     assert {"--cpus-per-task=2", "--mem=270M", "--time=7", "--no-requeue"} <= set(asked[-1])
-    assert f"--job-name={name}" in asked[-1]
 
 
-def test_a_job_whose_answer_was_lost_is_not_submitted_twice(slurm, monkeypatch, capsys):
-    modules, script_answers = slurm
+def test_a_job_whose_answer_was_lost_is_not_submitted_twice(call, tmp_path):
     names = []
 
     def lost(command):
         names.extend(word.partition("=")[2] for word in command if word.startswith("--job-name="))
         return 1, "", "sbatch: error: Socket timed out on send/recv operation\n"
 
-    asked = script_answers(squeue=[(0, "3|other\n", ""), lambda _: (0, f"3|other\n18|{names[0]}\n", "")], sbatch=[lost])
-    code, output, _ = submit_script(modules, monkeypatch, capsys)
-    assert (code, output) == (0, f"18:{names[0]}\n")
-    assert [command[0] for command in asked] == ["squeue", "sbatch", "squeue"]
+    def queue(_):
+        return 0, f"3|other|{tmp_path}\n18|{names[0]}|{tmp_path}\n", ""
+
+    code, output, _, asked = call("submit", "script.sh", lost, queue)
+    assert (code, output, len(asked)) == (0, "18\n", 2)
+
+
+@pytest.mark.parametrize(("answer", "patience"), [(REFUSED, 300.0), (SILENT, -1.0)], ids=["refused", "silent for good"])
+def test_a_refused_or_unanswered_submission_ends_with_one_line(call, monkeypatch, answer, patience):
+    monkeypatch.setattr(sys.modules["jobs"], "PATIENCE", patience)
+    code, output, error, asked = call("submit", "script.sh", answer)
+    assert (code, output, error, len(asked)) == (1, "", f"submit.py: {answer[2]}", 1)
+
+
+def test_only_jobs_of_this_study_and_folder_are_cancelled(call, tmp_path):
+    lines = f"3|tiny.points.0a|{tmp_path}\n4|tiny2.points.0b|{tmp_path}\n5|tiny.points.0c|{tmp_path}/other\n"
+    code, _, error, asked = call("jobs", "tiny", (0, lines, ""), (0, "", ""), (0, lines[lines.index("4|") :], ""))
+    assert (code, error) == (0, "Slurm jobs of an earlier run are cancelled: 3\n")
+    assert [command for command in asked if command[0] != "squeue"] == [("scancel", "3")]
 
 
 @pytest.mark.parametrize(
-    ("answer", "patience", "words"),
+    ("answer", "done", "status"),
     [
-        ((1, "", "sbatch: error: Batch job submission failed: Invalid partition name specified\n"), 300.0, "partition"),
-        (SILENT, -1.0, "Unable to contact slurm controller"),
-    ],
-    ids=["refused", "silent for good"],
-)
-def test_a_refused_or_unanswered_submission_ends_with_one_line(slurm, monkeypatch, capsys, answer, patience, words):
-    modules, script_answers = slurm
-    monkeypatch.setattr(modules["jobs"], "PATIENCE", patience)
-    asked = script_answers(squeue=[(0, "", "")], sbatch=[answer])
-    code, output, error = submit_script(modules, monkeypatch, capsys)
-    assert (code, output, len(error.splitlines())) == (1, "", 1)
-    assert error.startswith("submit.py: sbatch: error: ")
-    assert words in error
-    assert [command[0] for command in asked] == ["squeue", "sbatch"]
-
-
-@pytest.mark.parametrize(
-    ("answer", "left", "latency", "status"),
-    [
-        (SILENT, None, 60.0, "running"),
-        ((0, "JobName=wait-1 JobState=PENDING\n", ""), None, 60.0, "running"),
-        # Its files may not be visible yet.
-        ((1, "", "slurm_load_jobs error: Invalid job id specified\n"), None, 60.0, "running"),
-        ((1, "", "slurm_load_jobs error: Invalid job id specified\n"), None, 0.0, "failed"),
-        ((0, "JobName=wait-1 JobState=TIMEOUT\n", ""), None, 60.0, "failed"),
-        ((0, "JobName=wait-1 JobState=COMPLETED\n", ""), "3", 60.0, "failed"),
-        ((0, "JobName=wait-1 JobState=COMPLETED\n", ""), "0", 60.0, "success"),
-        # Slurm has restarted its numbering: the number is that of another job.
-        ((0, "JobName=other JobState=RUNNING\n", ""), "0", 60.0, "success"),
+        (SILENT, False, "running"),
+        ((0, "JobId=5 JobName=a JobState=PENDING\n", ""), False, "running"),
+        ((0, "JobId=5 JobName=a JobState=TIMEOUT\n", ""), False, "failed"),
+        ((0, "JobId=5 JobName=a JobState=COMPLETED\n", ""), True, "success"),
+        (FORGOTTEN, False, "failed"),
+        (FORGOTTEN, True, "success"),
     ],
 )
-def test_the_status_of_a_job(slurm, monkeypatch, capsys, tmp_path, answer, left, latency, status):
-    modules, script_answers = slurm
-    job = tmp_path / ".snakemake/slurm/wait-1"
-    job.mkdir(parents=True)
-    if left is not None:
-        (job / "exit").write_text(left)
-    script_answers(scontrol=[answer])
-    monkeypatch.setattr(modules["status"], "LATENCY", latency)
-    monkeypatch.setattr(sys, "argv", ["status.py", "5:wait-1"])
-    assert modules["status"].main() == 0
-    output, error = capsys.readouterr()
-    assert output == f"{status}\n"
-    assert error.startswith("Slurm job 5 wait-1: ") is (status == "failed")
-    assert job.exists() is (status != "success")
+def test_the_status_of_a_job(call, tmp_path, answer, done, status):
+    folder = tmp_path / ".snakemake/slurm"
+    folder.mkdir(parents=True)
+    for name in ("5.txt", "5.done")[: 1 + done]:
+        (folder / name).touch()
+    code, output, error, _ = call("status", "5", answer)
+    assert (code, output) == (0, f"{status}\n")
+    assert error.startswith("Slurm job 5: ") is (status == "failed")
+    # A failed job keeps its output.
+    assert [path.name for path in folder.iterdir()] == ([] if status == "success" else ["5.txt"])

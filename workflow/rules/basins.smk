@@ -73,7 +73,7 @@ rule basins:
     benchmark:
         f"{RESULTS}/benchmarks/basins.tsv"
     group:
-        group("summaries")
+        "summaries"
     params:
         config=uses(
             MODELS, PLANE, "basins.a", "basins.pixels", "basins.tiles", "basins.pairs", stage="basins", refusal=NO_MAPS

@@ -68,7 +68,7 @@ rule edges:
     benchmark:
         f"{RESULTS}/benchmarks/edges.tsv"
     group:
-        group("summaries")
+        "summaries"
     params:
         config=uses(stage="edges", refusal=NO_EDGES),
         sources=sources("edges"),
@@ -91,7 +91,7 @@ rule bifurcations:
     benchmark:
         f"{RESULTS}/benchmarks/bifurcations.tsv"
     group:
-        group("summaries")
+        "summaries"
     params:
         config=uses(stage="bifurcations"),
         sources=sources("bifurcations"),

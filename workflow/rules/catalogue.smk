@@ -36,7 +36,7 @@ rule catalogue:
     benchmark:
         f"{RESULTS}/benchmarks/catalogue.tsv"
     group:
-        group("summaries")
+        "summaries"
     resources:
         mem_mb=1000,
     params:

@@ -59,7 +59,7 @@ rule chains_summary:
     benchmark:
         f"{RESULTS}/benchmarks/chains.tsv"
     group:
-        group("summaries")
+        "summaries"
     params:
         config=uses(stage="chains", refusal=length_refusal(STUDY)),
         sources=sources("chains_summary"),

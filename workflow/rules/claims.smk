@@ -14,7 +14,7 @@ rule claims:
     benchmark:
         f"{RESULTS}/benchmarks/claims.tsv"
     group:
-        group("summaries")
+        "summaries"
     resources:
         mem_mb=1000,
     params:

@@ -46,7 +46,7 @@ for figure in figure_descriptions():
             f"{RESULTS}/benchmarks/figure_{figure.file}.tsv"
         priority: FIRST if figure.paper else 0
         group:
-            group("figures")
+            "figures"
         params:
             config=uses(
                 *keys_of(figure),

@@ -38,7 +38,7 @@ rule phases:
     benchmark:
         f"{RESULTS}/benchmarks/phases.tsv"
     group:
-        group("summaries")
+        "summaries"
     params:
         config=uses(stage="phases", refusal=NO_PHASES),
         sources=sources("phases"),

@@ -25,7 +25,7 @@ rule simulate:
         f"{RESULTS}/benchmarks/simulate/{POINT}.tsv"
     priority: 3
     group:
-        fixed_group("points", all_points(STUDY))
+        "points"
     resources:
         mem_mb=150,
         runtime=10,

@@ -18,7 +18,7 @@ rule proof:
     benchmark:
         f"{RESULTS}/benchmarks/proof.tsv"
     group:
-        group("summaries")
+        "summaries"
     params:
         config=uses([f"laws.{law}" for law in STUDY.proved_laws], MODELS[1:], stage="proof", refusal=NO_PROOF),
         sources=sources("proof"),

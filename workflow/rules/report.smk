@@ -16,7 +16,7 @@ rule report:
     benchmark:
         f"{RESULTS}/benchmarks/report.tsv"
     group:
-        group("figures")
+        "figures"
     resources:
         mem_mb=600,
     params:

@@ -13,7 +13,7 @@ use rule simulate as simulate_solver with:
     wildcard_constraints:
         solver="|".join(SOLVERS),
     group:
-        fixed_group("solver_points", REPEATED)
+        "solver_points"
     resources:
         mem_mb=150,
         runtime=60,
@@ -35,7 +35,7 @@ rule solvers:
     benchmark:
         f"{RESULTS}/benchmarks/solvers.tsv"
     group:
-        group("summaries")
+        "summaries"
     params:
         config=uses(run_keys(STUDY), "initial", "solvers.a", "solvers.step", stage="solvers"),
         sources=sources("solvers"),

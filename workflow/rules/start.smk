@@ -43,9 +43,9 @@ def prepare_results():
     """Check that the results folder is writable, record the study in it, and plan the run."""
     if error := cluster_error(submit_command(workflow)):
         sys.exit(error)
-    # Identifies the results of the jobs to the programs that submit them.
-    made_from = sorted(f"{rule.params.get('sources')}" for rule in workflow.rules)
-    os.environ.update(BK_STUDY=f"{RESULTS} {digest_of(STUDY.config, made_from)}")
+    # The name of the study, to the programs that submit jobs.
+    os.environ.update(BK_STUDY=STUDY.name)
+    cancel_left_jobs(submit_command(workflow))
     print_remarks()
     try:
         check_folder(RESULTS, inside=True)
@@ -54,6 +54,18 @@ def prepare_results():
         sys.exit(f"{error}")
     lift_job_rate_limit(workflow)
     PLAN.announce()
+
+
+def cancel_left_jobs(submit):
+    """Cancel the jobs that a killed run has left on Slurm: they may make files of another config at any time.
+
+    Jobs of a run that is not over, of other targets of the same study, are left alone.
+    """
+    program = Path(submit or "")
+    jobs = program.parent / "jobs.py"
+    if program.name == "submit.py" and jobs.is_file() and not OTHER_RUN:
+        if subprocess.run([sys.executable, jobs, STUDY.name]).returncode:
+            sys.exit(1)
 
 
 def set_damaged_aside(makes_files):
@@ -82,7 +94,8 @@ if not STUDY.is_plane:
 # Snakemake has no hook before it decides which jobs to run. Only in the main process, not in jobs, and not while another
 # run writes these files.
 if not is_job(workflow):
-    if not is_locked(Path(RESULTS)):
+    OTHER_RUN = is_locked(Path(RESULTS))
+    if not OTHER_RUN:
         set_damaged_aside(runs_jobs(sys.argv[1:]) and not is_dry_run(workflow))
     # A dry run calls no hook.
     if is_dry_run(workflow):

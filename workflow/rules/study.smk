@@ -2,6 +2,7 @@
 import copy
 import os
 import shlex
+import subprocess
 import sys
 from itertools import chain
 from pathlib import Path
@@ -30,7 +31,7 @@ from burridge_knopoff.provenance.files import (
     display_path,
     nearest_folder,
 )
-from burridge_knopoff.provenance.keys import digest_of, select
+from burridge_knopoff.provenance.keys import select
 from burridge_knopoff.provenance.record import check_owner, write_study_record
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.provenance.sums import write_sums
@@ -51,15 +52,13 @@ from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.model import MODEL_KEYS
 from burridge_knopoff.study.paths import VALUE
 from burridge_knopoff.study.remarks import remarks
-from burridge_knopoff.study.study import all_points, run_files, solver_points
+from burridge_knopoff.study.study import run_files, solver_points
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.private import (
     config_of_command_line,
     cores,
-    group_sizes,
     is_job,
-    join_groups,
     lift_job_rate_limit,
     submit_command,
     targets,

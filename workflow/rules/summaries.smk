@@ -20,7 +20,7 @@ rule runs:
         f"{RESULTS}/benchmarks/runs.tsv"
     priority: FIRST
     group:
-        group("summaries")
+        "summaries"
     resources:
         runtime=30,
     params:
@@ -44,7 +44,7 @@ rule mean_distance:
         f"{RESULTS}/benchmarks/mean_distance.tsv"
     priority: FIRST
     group:
-        group("summaries")
+        "summaries"
     resources:
         runtime=30,
     params:
@@ -68,7 +68,7 @@ rule bifurcation_diagram:
         f"{RESULTS}/benchmarks/bifurcation_diagram.tsv"
     priority: FIRST
     group:
-        group("summaries")
+        "summaries"
     resources:
         mem_mb=1000,
         runtime=30,
@@ -92,7 +92,7 @@ rule lyapunov:
     benchmark:
         f"{RESULTS}/benchmarks/lyapunov.tsv"
     group:
-        group("summaries")
+        "summaries"
     resources:
         runtime=30,
     params:
@@ -115,7 +115,7 @@ rule stick_slip:
     benchmark:
         f"{RESULTS}/benchmarks/stick_slip.tsv"
     group:
-        group("summaries")
+        "summaries"
     resources:
         runtime=30,
     params:
@@ -143,7 +143,7 @@ rule agreement:
     benchmark:
         f"{RESULTS}/benchmarks/agreement.tsv"
     group:
-        group("summaries")
+        "summaries"
     resources:
         runtime=30,
     params:
@@ -165,7 +165,7 @@ rule orbits:
         f"{RESULTS}/benchmarks/orbits.tsv"
     priority: FIRST
     group:
-        group("summaries")
+        "summaries"
     resources:
         runtime=30,
     params:
@@ -186,7 +186,7 @@ rule equilibrium:
     benchmark:
         f"{RESULTS}/benchmarks/equilibrium.tsv"
     group:
-        group("summaries")
+        "summaries"
     resources:
         runtime=30,
     params:

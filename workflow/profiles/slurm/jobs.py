@@ -1,45 +1,57 @@
-"""Functions shared by submit.py, status.py and cancel.py: the folder of a submission, and requests to Slurm.
+#!/usr/bin/env python3
+"""Cancel the jobs of a study that an earlier run left in this folder, and wait for their end; functions of the others.
 
-`.snakemake/slurm/<name>/` contains `record.json` (the files that the job makes, and from what), its script, Slurm's
-output and, once the script has ended, `exit` with its exit code. The folder is created before the job is submitted, and
-the job has its name in Slurm: the next Snakemake finds a job whose own Snakemake was killed.
+    jobs.py STUDY
 
-These programs use only the standard library of Python 3.8 or later.
+Exit code 1, with one line on stderr, if they do not end or Slurm does not answer. All programs of this folder use only
+the standard library of Python 3.8 or later.
 """
 
 import itertools
+import os
 import subprocess
+import sys
 import time
 from pathlib import Path
 
+#: What a job writes; `NUMBER.done` is made when its script has succeeded.
 FOLDER = Path(".snakemake/slurm")
-#: In the folder of a job.
-RECORD, OUTPUT = "record.json", "output.txt"
-#: Seconds for which requests to a controller that does not answer are repeated, and seconds between them.
+#: Seconds for which requests are repeated, to a controller that does not answer for example, and seconds between them.
 PATIENCE, PAUSE = 300.0, 5.0
 
 
-def exit_code(job):
-    """Return the exit code of the script in the folder of a job; None while it has none."""
+def main():
+    """Cancel the jobs; return the exit code."""
     try:
-        # Listing a folder makes a network file system refresh it.
-        list(job.iterdir())
-        return int((job / "exit").read_text())
-    except (OSError, ValueError):
-        return None
+        for number in attempts():
+            left = live_jobs(sys.argv[1])
+            if not left:
+                return 0
+            if number == 0:
+                print(f"Slurm jobs of an earlier run are cancelled: {' '.join(left.values())}", file=sys.stderr)
+            ask("scancel", *left.values())
+        raise OSError(f"cancelled jobs do not end: {' '.join(left.values())}")
+    except OSError as error:
+        print(f"jobs.py: {error}", file=sys.stderr)
+        return 1
 
 
-def live_jobs():
-    """Return {name: Slurm's number} of this user's jobs that have not ended; raise OSError if Slurm does not answer."""
+def live_jobs(study):
+    """Return {name: number} of the jobs of a study in this folder that have not ended.
+
+    Raises OSError if Slurm does not answer.
+    """
     for _ in attempts():
-        answer = ask("squeue", "--me", "--noheader", "--format=%A|%j")
+        answer = ask("squeue", "--me", "--noheader", "--format=%A|%j|%Z")
         if answer.returncode == 0:
-            return {name: number for number, _, name in (line.partition("|") for line in answer.stdout.splitlines())}
+            jobs = (line.split("|", 2) for line in answer.stdout.splitlines())
+            here = (study, os.getcwd())
+            return {name: number for number, name, folder in jobs if (name.partition(".")[0], folder) == here}
     raise OSError("squeue: " + one_line(answer.stderr))
 
 
 def attempts():
-    """Count the attempts to reach a controller that does not answer, with a pause after each."""
+    """Count the attempts at a request, with a pause after each."""
     end = time.monotonic() + PATIENCE
     for number in itertools.count():
         yield number
@@ -56,3 +68,7 @@ def ask(*command, **options):
 def one_line(text):
     """Return the last non-empty line of a text."""
     return next((line.strip() for line in reversed(text.splitlines()) if line.strip()), "no reason given")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
