@@ -16,7 +16,6 @@ import numpy as np
 from replay import planned
 
 from snakemake_logger_plugin_study.durations import FILE, SHIPPED, measured_seconds, work_of
-from snakemake_logger_plugin_study.private import all_jobs
 
 
 def main():
@@ -25,7 +24,7 @@ def main():
     for config in sys.argv[1:]:
         plan = planned(config, "all", "chains")
         work = work_of(plan.study)
-        for job in all_jobs(plan.workflow):
+        for job in plan.workflow.dag.jobs:
             seconds = measured_seconds(job.benchmark, int(job.threads)) if job.benchmark else None
             if seconds is not None:
                 size = sum(path.stat().st_size for path in map(Path, job.output) if path.is_file())

@@ -13,6 +13,7 @@ Snakemake itself, and the slowing of jobs by each other, is not included.
 
 import argparse
 import contextlib
+import heapq
 import io
 import re
 import sys
@@ -24,7 +25,7 @@ from snakemake.cli import main as snakemake
 
 from snakemake_logger_plugin_study.durations import Durations, measured_seconds, work_of
 from snakemake_logger_plugin_study.plan import PLAN
-from snakemake_logger_plugin_study.run import DONE, RUNNING, WAITING, schedule
+from snakemake_logger_plugin_study.run import DONE, RUNNING, WAITING
 
 #: Moments of a run at which the estimate is compared, and the smallest time that the display prints.
 MOMENTS, LEAST = 400, 10.0
@@ -48,8 +49,11 @@ def planned(config, *targets, cores=2):
 
 
 def recorded(config, cores=2):
-    """Return the run of all jobs of a study and {number: seconds of the job in the last run}."""
-    run = planned(config, cores=cores).look_ahead()
+    """Return the run of all jobs of a study, by priority, and {number: seconds of the job in the last run}."""
+    plan = planned(config, cores=cores)
+    run, dag = plan.look_ahead(), plan.workflow.dag
+    priority = {dag.jobid(job): job.priority for job in dag.jobs}
+    run.jobs = dict(sorted(run.jobs.items(), key=lambda item: -priority[item[0]]))
     run.cores = cores
     took = {number: measured_seconds(job.benchmark, 1) for number, job in run.jobs.items()}
     if missing := [run.jobs[number].name for number, seconds in took.items() if seconds is None]:
@@ -67,7 +71,36 @@ def estimates(run, seconds):
             job.begin = ends[number] - seconds[number]
             job.state = WAITING if job.begin > moment else RUNNING if ends[number] > moment else DONE
             job.seconds = seconds[number] * job.threads if job.state == DONE else None
-        yield moment, run.forecast(moment), end - moment
+        yield moment, run.time_left(moment), end - moment
+
+
+def schedule(jobs, seconds, cores):
+    """Return {job: the time at which it ends}, for a scheduler that keeps all cores busy and takes the jobs in order.
+
+    jobs : {number: job}; seconds : {number: duration}
+    """
+    missing = {number: len(job.needs) for number, job in jobs.items()}
+    after = defaultdict(list)
+    for number, job in jobs.items():
+        for need in job.needs:
+            after[need].append(number)
+    order = {number: (place, number) for place, number in enumerate(jobs)}
+    # Sorted lists are heaps.
+    ready = sorted(order[number] for number in jobs if not missing[number])
+    ends, running, free, now = {}, [], cores, 0.0
+    while ready or running:
+        while ready and (free >= jobs[ready[0][-1]].threads or not running):
+            number = heapq.heappop(ready)[-1]
+            free -= jobs[number].threads
+            ends[number] = now + seconds[number]
+            heapq.heappush(running, (ends[number], number))
+        now, number = heapq.heappop(running)
+        free += jobs[number].threads
+        for other in after[number]:
+            missing[other] -= 1
+            if not missing[other]:
+                heapq.heappush(ready, order[other])
+    return ends
 
 
 def ratio(first, second):

@@ -29,15 +29,6 @@ def measured_seconds(benchmark: str | Path, threads: int) -> float | None:
     return next((wall * threads for wall, *_ in job_costs(Path(benchmark))), None)
 
 
-def shipped_cost(rule: str, work: float) -> tuple[float, float]:
-    """Return the shipped seconds of a job, times its threads, and its bytes, interpolated between its two rows."""
-    first, *costs = SHIPPED.get(rule, _OTHERS)
-    last = costs[0] if costs else first
-    share = max(0.0, (work - first[0]) / (last[0] - first[0])) if costs else 0.0
-    seconds, size = (low + share * (high - low) for low, high in zip(first[1:], last[1:], strict=True))
-    return seconds, size
-
-
 @dataclass(frozen=True)
 class Durations:
     """Durations of the jobs of a study.
@@ -50,25 +41,23 @@ class Durations:
     last: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
     def shipped_cost(self, rule: str) -> tuple[float, float]:
-        """Return the shipped seconds, times the threads, and the bytes of a job of this study."""
-        return shipped_cost(rule, self.work.get(rule, self.work.get("all points", 0.0)))
+        """Return the shipped seconds of a job, times its threads, and its bytes, interpolated between its two rows."""
+        first, *others = SHIPPED.get(rule, _OTHERS)
+        last, work = [*others, first][0], self.work.get(rule, self.work.get("all points", 0.0))
+        share = max(0.0, (work - first[0]) / (last[0] - first[0])) if others else 0.0
+        seconds, size = (low + share * (high - low) for low, high in zip(first[1:], last[1:], strict=True))
+        return seconds, size
 
     def expected(self, rules: Collection[str], finished: Mapping[str, Sequence[float]]) -> dict[str, float]:
         """Return {rule: expected seconds of a job, times its threads}.
 
         finished : {rule: seconds of each job that has finished in this run, times its threads}
         """
-        durations = {**self.last, **finished}
-        taken = sum(map(sum, durations.values()))
+        known = {**self.last, **finished}
+        shipped = sum(len(jobs) * self.shipped_cost(rule)[0] for rule, jobs in known.items())
         # The ratio of durations on this machine to the shipped ones.
-        ratio = (
-            taken / sum(len(jobs) * self.shipped_cost(rule)[0] for rule, jobs in durations.items())
-            if durations
-            else 1.0
-        )
-        return {
-            rule: fmean(durations[rule]) if rule in durations else ratio * self.shipped_cost(rule)[0] for rule in rules
-        }
+        ratio = sum(map(sum, known.values())) / shipped if shipped else 1.0
+        return {rule: fmean(known[rule]) if rule in known else ratio * self.shipped_cost(rule)[0] for rule in rules}
 
 
 def work_of(study: Study) -> dict[str, float]:

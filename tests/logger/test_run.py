@@ -3,8 +3,8 @@
 import pytest
 
 from snakemake_logger_plugin_study import durations
-from snakemake_logger_plugin_study.durations import SHIPPED, Durations, measured_seconds, shipped_cost
-from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, WAITING, Job, Run
+from snakemake_logger_plugin_study.durations import SHIPPED, Durations, measured_seconds
+from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, Job, Run
 
 ROWS = {"short": [[1.0, 1.0, 100.0]], "long": [[1.0, 10.0, 50.0], [3.0, 30.0, 150.0]]}
 
@@ -35,75 +35,64 @@ def run(*jobs, cores=1, work=1.0, last=None):
     ("jobs", "cores", "seconds"),
     [
         ([short()] * 5, 1, 5.0),
-        ([short()] * 5, 2, 3.0),
+        ([short()] * 5, 2, 2.5),
         ([job("long"), *[short()] * 5], 2, 10.0),
-        # The longest job is begun last, unless it has a higher priority.
-        ([*[short()] * 4, job("long")], 2, 12.0),
-        ([*[short()] * 4, job("long", priority=1.0)], 2, 10.0),
         # One after the other, whatever the number of cores.
         ([short(), short(0), short(1)], 8, 3.0),
-        # Threads take their cores, and share the work.
-        ([short(threads=2)] * 3, 2, 1.5),
-        ([short(threads=2)] * 3, 4, 1.0),
+        # Threads share the work.
+        ([short(threads=2)] * 3, 4, 0.75),
+        ([job("long", threads=2), short(0)], 8, 6.0),
         # What a failed job blocks is not waited for.
         ([short(state=FAILED), short(0), short(1), job("long")], 1, 10.0),
         ([], 2, 0.0),
     ],
 )
-def test_a_schedule_fills_all_cores(jobs, cores, seconds):
-    assert run(*jobs, cores=cores).forecast(0.0) == seconds
+def test_the_time_left_is_that_of_all_work_or_of_its_longest_chain(jobs, cores, seconds):
+    assert run(*jobs, cores=cores).time_left(0.0) == seconds
 
 
 def test_finished_jobs_come_before_the_last_run_and_that_before_the_tree():
     last = {"short": [4.0, 2.0]}
-    assert run(short(), last=last).forecast(0.0) == 3.0
-    assert run(done(7.0), done(9.0), short(), last=last).forecast(0.0) == 8.0
+    assert run(short(), last=last).time_left(0.0) == 3.0
+    assert run(done(7.0), done(9.0), short(), last=last).time_left(0.0) == 8.0
 
 
 def test_finished_jobs_give_the_speed_of_the_machine():
     """For rules of which no job has finished: all seconds that were taken, over those that the tree ships."""
-    assert run(job("long")).forecast(0.0) == 10.0
-    assert run(done(3.0), done(1.0), job("long")).forecast(0.0) == 20.0
-    assert run(job("long"), last={"short": [0.5]}).forecast(0.0) == 5.0
+    assert run(job("long")).time_left(0.0) == 10.0
+    assert run(done(3.0), done(1.0), job("long")).time_left(0.0) == 20.0
+    assert run(job("long"), last={"short": [0.5]}).time_left(0.0) == 5.0
 
 
 def test_the_tree_ships_durations_on_a_line():
-    assert [shipped_cost("long", work)[0] for work in (0.0, 1.0, 2.0, 3.0, 9.0)] == [10.0, 10.0, 20.0, 30.0, 90.0]
-    assert shipped_cost("long", 2.0)[1] == 100.0
-    assert shipped_cost("short", 0.0) == shipped_cost("short", 9.0) == (1.0, 100.0)
-    assert shipped_cost("unknown", 1.0)[0] > 0.0
-    assert run(job("long"), work=2.0).forecast(0.0) == 20.0
+    for work, seconds, size in ((0.0, 10.0, 50.0), (1.0, 10.0, 50.0), (2.0, 20.0, 100.0), (9.0, 90.0, 450.0)):
+        assert Durations({"long": work}).shipped_cost("long") == (seconds, size)
+    assert Durations({"short": 9.0}).shipped_cost("short") == (1.0, 100.0)
+    assert Durations().shipped_cost("unknown")[0] > 0.0
+    assert run(job("long"), work=2.0).time_left(0.0) == 20.0
 
 
 def test_a_running_job_counts_with_what_is_left_of_it():
     begun = [job("long", state=RUNNING), job("long", state=RUNNING, begin=4.0)]
-    assert run(*begun, cores=2).forecast(6.0) == 8.0
-    assert run(*begun, short(), cores=2).forecast(100.0) == 1.0
+    assert run(*begun, cores=2).time_left(6.0) == 8.0
+    assert run(*begun, short(), cores=2).time_left(100.0) == 1.0
 
 
-def test_a_running_job_that_reports_its_progress_takes_as_long_as_this_shows(tmp_path):
-    """At first it counts as expected; from a quarter on, only its progress does."""
+def test_a_running_job_that_is_slower_than_expected_takes_as_long_as_its_log_shows(tmp_path):
+    """From a quarter on. Half of it may have been in the cache, at once."""
     log = tmp_path / "log"
     study = run(job("long", state=RUNNING, log=[log]))
     left = []
     for share in ("", "progress 0.125\n", "progress 0.250\n", "progress 0.500\n"):
         with log.open("a") as file:
             file.write(f"searched: 10, 5.0 s, the longest 1.0 s\n{share}")
-        left.append(study.forecast(8.0))
-    assert left == [2.0, 0.875 * (0.5 * 10.0 + 0.5 * 64.0), 24.0, 8.0]
+        left.append(study.time_left(8.0))
+    assert left == [2.0, 2.0, 24.0, 8.0]
     assert study.stages(8.0)[-1].share_done == 0.5
-    # Half of it was in the cache: the other half takes half of the time.
-    assert study.forecast(0.1) == 5.0
+    assert study.time_left(1.0) == 9.0
     # The log of an earlier run is none.
     study.jobs[0].since = log.stat().st_mtime + 1.0
-    assert study.forecast(8.0) == 2.0
-
-
-def test_the_time_left_is_counted_down_until_it_is_worked_out_again():
-    study = run(job("long"), *[short()] * 20)
-    assert [study.time_left(now) for now in (0.0, 0.5)] == [30.0, 29.5]
-    study.jobs[0].state = FAILED
-    assert [study.time_left(now) for now in (1.5, 2.5)] == [28.5, 20.0]
+    assert study.time_left(8.0) == 2.0
 
 
 def test_the_share_done_is_one_of_time():
@@ -127,15 +116,6 @@ def test_what_a_failed_job_blocks():
     assert (study.jobs_in(FAILED), study.blocked()) == ([], set())
     failed.state, after.needs = FAILED, frozenset({1})
     assert study.blocked() == set()
-
-
-def test_a_job_that_was_not_planned_is_added():
-    study = run()
-    walked = study.jobs
-    for state, counts in ((WAITING, {WAITING: 1}), (RUNNING, {RUNNING: 1}), (DONE, {DONE: 1})):
-        study.job(7, "other").state = state
-        assert [(stage.name, stage.counts) for stage in study.stages(0.0)] == [("other", counts), ("all", counts)]
-    assert walked == {}
 
 
 def test_a_benchmark_file_holds_the_seconds_of_all_threads(tmp_path):

@@ -36,7 +36,7 @@ class PlannedStudy:
     """The jobs of the targets, the record of the whole study, its files and rules, and what Snakemake has written.
 
     files : {file that the workflow makes, except points: its rule}
-    refusals : {rule: the reason why the study does not have it}
+    refusals : {rule or file that the study does not have: why}
     """
 
     jobs: tuple[PlannedJob, ...] = ()
@@ -93,7 +93,7 @@ def _plan(results: str, targets: tuple[str, ...]) -> PlannedStudy:
         tuple(_job(results, job) for job in (dag.jobs if dag else ()) if job.output),
         read_study_record(results),
         {file.removeprefix(results): rule for file, rule in PLAN.files.items()},
-        {name: params.refusal for name, params in PLAN.rules.items() if params.refusal},
+        dict(PLAN.refusals),
         output,
     )
 

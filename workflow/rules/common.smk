@@ -27,7 +27,7 @@ def uses(*keys, stage, jobs=ONCE, over="a", refusal="", by_name=False):
     # Snakemake does not compare params that are functions of the output.
     def of_job(wildcards):
         if frozenset(wildcards.items()) not in known or of_job.refusal:
-            refuse(of_job, wildcards, of_job.refusal or other_value(dict(wildcards), jobs))
+            raise ConfigError(f"{dict(wildcards)}: {of_job.refusal or 'this study has no such job'}")
         names = [key(wildcards) if callable(key) else key for key in keys]
         lists = [[name] if isinstance(name, str) else name for name in names]
         used = [name.format(**wildcards) for name in chain.from_iterable(lists)]
@@ -43,28 +43,11 @@ def simulates(stage):
 
     def of_job(wildcards):
         if of_job.refusal:
-            refuse(of_job, wildcards, of_job.refusal)
+            raise ConfigError(f"{dict(wildcards)}: {of_job.refusal}")
         return STUDY.command(**wildcards)
 
     of_job.stage, of_job.refusal = stage, STUDY.omission(stage, "any")
     return of_job
-
-
-def refuse(params, wildcards, reason):
-    """Raise ConfigError, one line, for a job of the rule with this params function."""
-    refused = next(item for item in workflow.rules if params_of(item) is params)
-    files = [apply_wildcards(f"{file}", wildcards) for file in refused.output]
-    asked = [name for name in (refused.name, *files) if name in targets(workflow)]
-    raise ConfigError(f"{[*asked, files[0]][0]}: not made: {reason}")
-
-
-def other_value(wildcards, jobs):
-    """Return which wildcard has a value that no job has, and those that it can have."""
-    for name, value in wildcards.items():
-        values = list(dict.fromkeys(job[name] for job in jobs))
-        if value not in values:
-            return f"{name}: got {value}, expected {listed(values) or 'no value'}"
-    return "this study has no job of these values"
 
 
 def sources(script, *modules):
@@ -96,7 +79,8 @@ def shared_cores(wildcards):
     The jobs of all laws run at the same time, each with at least two cores, since with one core each they would not end
     together.
     """
-    return max(2, cores(workflow) // len(STUDY.laws))
+    # Without a number of cores, as on a cluster, there is one.
+    return max(2, (workflow.resource_settings.cores or 1) // len(STUDY.laws))
 
 
 def all_threads(wildcards, threads):
@@ -165,9 +149,9 @@ def figures_of_claims(wildcards):
     return sorted(name for name in named if f"{RESULTS}/figures/{name}.png" in FILES)
 
 
-# {file of the study, except points: its rule and its log}; the files that only a request by name makes. Filled in by
-# `add_files` when all rules are known.
-FILES, BY_NAME = {}, set()
+# {file of the study, except points: its rule and its log}; the files that only a request by name makes; {rule or file
+# that the study does not have: why}. Filled in by `add_files` when all rules are known.
+FILES, BY_NAME, REFUSALS = {}, set(), {}
 
 
 def files_in(*starts, suffix=""):
@@ -184,18 +168,20 @@ def params_of(rule):
 
 
 def add_files():
-    """Fill in `FILES` and `BY_NAME` from the rules of this study and the jobs that their params name."""
-    absent = set()
+    """Fill in `FILES`, `BY_NAME` and `REFUSALS` from the rules of this study and the jobs that their params name."""
     for item in workflow.rules:
         params = params_of(item)
+        if params and params.refusal:
+            REFUSALS[item.name] = params.refusal
         # Points follow from the grid.
         if not hasattr(params, "jobs"):
             continue
         reads = {f"{file}" for file in item.input if not is_callable(file)}
+        reason = params.refusal or next((REFUSALS[file] for file in reads if file in REFUSALS), "")
         for job in params.jobs:
             made = [apply_wildcards(f"{file}", job) for file in item.output]
-            if params.refusal or reads & absent:
-                absent.update(made)
+            if reason:
+                REFUSALS.update(dict.fromkeys(made, reason))
                 continue
             FILES.update(dict.fromkeys(made, (item, apply_wildcards(f"{item.log[0]}", job))))
             if params.by_name or reads & BY_NAME:

@@ -31,41 +31,45 @@ def print_remarks():
     made_from = {inside(file): rule.params["sources"] for file, (rule, _) in FILES.items()}
     for remark in (
         *remarks(STUDY, GIVEN),
-        *points_of_grid(STUDY),
-        *kept_stages(STUDY, {rule.params["config"].stage for rule, _ in FILES.values()}),
-        *changed_params(changes(STUDY, Path(RESULTS), made_from)),
-        *replaced_results(STUDY, RESULTS, display_path(CONFIG_FILE), OVERRIDES),
+        *change_remarks(changes(STUDY, Path(RESULTS), made_from)),
+        *override_remarks(STUDY, RESULTS, display_path(CONFIG_FILE), OVERRIDES),
     ):
         write_line(remark)
 
 
-def prepare_results():
-    """Check that the results folder is writable, record the study in it, and plan the run."""
-    if error := cluster_error(submit_command(workflow)):
-        sys.exit(error)
+def prepare_cluster():
+    """Before jobs are submitted to Slurm, cancel those that a killed run has left: they may make files of another config.
+
+    Jobs of a run that is not over, of other targets of the same study, are left alone. Ends the run, with one line, if
+    Slurm does not answer: each job would try for minutes.
+    """
+    program = Path(getattr(workflow.executor_settings, "submit_cmd", None) or "")
+    if program.name != "submit.py" or not program.with_name("jobs.py").is_file():
+        return
+    answer = subprocess.run(["sh", "-c", "squeue --me --noheader"], capture_output=True, text=True)
+    if answer.returncode:
+        sys.exit(f"no job is submitted, Slurm does not answer: squeue: {answer.stderr.strip()}")
     # The name of the study, to the programs that submit jobs.
     os.environ.update(BK_STUDY=STUDY.name)
-    cancel_left_jobs(submit_command(workflow))
+    if not OTHER_RUN and subprocess.run([sys.executable, program.with_name("jobs.py"), STUDY.name]).returncode:
+        sys.exit(1)
+
+
+def prepare_results():
+    """Check that the results folder is writable, record the study in it, and plan the run."""
+    prepare_cluster()
     print_remarks()
     try:
         check_folder(RESULTS, inside=True)
         record_study()
     except OSError as error:
         sys.exit(f"{error}")
-    lift_job_rate_limit(workflow)
+    # With a limit on the rate of jobs Snakemake starts a timer with every job, and each of them checks all ready jobs
+    # every second until the end: after 1,400 jobs, 1,400 threads take two thirds of a core (its issue 3804). Programs
+    # that submit jobs to a cluster need the limit.
+    if not workflow.non_local_exec:
+        workflow.scheduler.job_rate_limiter = None
     PLAN.announce()
-
-
-def cancel_left_jobs(submit):
-    """Cancel the jobs that a killed run has left on Slurm: they may make files of another config at any time.
-
-    Jobs of a run that is not over, of other targets of the same study, are left alone.
-    """
-    program = Path(submit or "")
-    jobs = program.parent / "jobs.py"
-    if program.name == "submit.py" and jobs.is_file() and not OTHER_RUN:
-        if subprocess.run([sys.executable, jobs, STUDY.name]).returncode:
-            sys.exit(1)
 
 
 def set_damaged_aside(makes_files):
@@ -83,22 +87,25 @@ def set_damaged_aside(makes_files):
 
 
 add_files()
-PLAN.results, PLAN.workflow, PLAN.study = RESULTS, workflow, STUDY
-PLAN.config, PLAN.checkout, PLAN.record = f"{CONFIG_FILE}", ROOT, record_study
-PLAN.files = {file: rule.name for file, (rule, _) in FILES.items()}
-PLAN.rules = {each.name: params_of(each) for each in workflow.rules if params_of(each)}
-# The display announces the figures of the paper as soon as they are drawn. A study of several parameters has none.
-if not STUDY.is_plane:
-    PLAN.first = [FILES[file][0].name for file in rules.curves.input[0]({})]
+PLAN.results, PLAN.workflow, PLAN.study, PLAN.record = RESULTS, workflow, STUDY, record_study
+PLAN.stages = {each.name: params_of(each).stage for each in workflow.rules if params_of(each)}
+PLAN.refusals = REFUSALS
+PLAN.files = {} if IMPORTED else {file: rule.name for file, (rule, _) in FILES.items()}
+# The first figures are a stage of their own, so that the display shows when they are ready.
+PLAN.stages |= dict.fromkeys((FILES[file][0].name for file in rules.curves.input[0]({})), "curves")
 
 # Snakemake has no hook before it decides which jobs to run. Only in the main process, not in jobs, and not while another
 # run writes these files.
-if not is_job(workflow):
-    OTHER_RUN = is_locked(Path(RESULTS))
+if workflow.is_main_process:
+    # Snakemake would warn of each missing file.
+    OPTIONS = {word.partition("=")[0] for word in sys.argv}
+    if "--report" in OPTIONS and "--report-after-run" not in OPTIONS and not Path(RESULTS).is_dir():
+        sys.exit(f"--report: {RESULTS} is missing: run the study first, by the same command without --report")
+    IS_DRY_RUN, OTHER_RUN = workflow.output_settings.dryrun, is_locked(Path(RESULTS))
     if not OTHER_RUN:
-        set_damaged_aside(runs_jobs(sys.argv[1:]) and not is_dry_run(workflow))
+        set_damaged_aside(runs_jobs(sys.argv[1:]) and not IS_DRY_RUN)
     # A dry run calls no hook.
-    if is_dry_run(workflow):
+    if IS_DRY_RUN:
         print_remarks()
 
 

@@ -11,11 +11,10 @@ from snakemake.io import apply_wildcards, is_callable
 from snakemake.utils import update_config
 
 from burridge_knopoff.provenance.kernel_build import KernelError, check_kernel
-from snakemake_logger_plugin_study.private import is_dry_run
 
 # Checked before anything imports the kernel. A dry run needs none.
 try:
-    check_kernel(compiled=not is_dry_run(workflow))
+    check_kernel(compiled=not workflow.output_settings.dryrun)
 except KernelError as error:
     sys.exit(f"{error}")
 
@@ -51,30 +50,15 @@ from burridge_knopoff.study.keys import (
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.model import MODEL_KEYS
 from burridge_knopoff.study.paths import VALUE
-from burridge_knopoff.study.remarks import remarks
+from burridge_knopoff.study.remarks import (
+    change_remarks,
+    override_remarks,
+    remarks,
+)
 from burridge_knopoff.study.study import run_files, solver_points
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
+from snakemake_logger_plugin_study.command_line import check_one_config, runs_jobs
 from snakemake_logger_plugin_study.plan import PLAN
-from snakemake_logger_plugin_study.private import (
-    config_of_command_line,
-    cores,
-    is_job,
-    lift_job_rate_limit,
-    submit_command,
-    targets,
-)
-from snakemake_logger_plugin_study.refusal import (
-    call_error,
-    cluster_error,
-    runs_jobs,
-)
-from snakemake_logger_plugin_study.remarks import (
-    changed_params,
-    kept_stages,
-    points_of_grid,
-    replaced_results,
-)
-from snakemake_logger_plugin_study.targets import listed
 
 # Another Snakefile may import this one as a module; it is then the main Snakefile.
 ROOT = Path(f"{workflow.current_basedir}").resolve().parents[1]
@@ -86,13 +70,16 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Jobs draw into files. The backend that a notebook names may not be installed here, and matplotlib would not load.
 os.environ.pop("MPLBACKEND", None)
 
-if error := call_error(ROOT, workflow.configfiles):
-    sys.exit(error)
+# Results are written to the current folder. In this one Snakemake finds the second Snakefile, and would begin another
+# study.
+if Path.cwd() == ROOT / "workflow":
+    sys.exit(f"no study is run in the folder workflow: cd {shlex.quote(str(ROOT))}")
 
 try:
+    check_one_config(workflow.configfiles)
     # Snakemake has read --config and the file as well, but accepts values that are refused here.
-    ENTRIES, READ = config_of_command_line(workflow)
-    OVERRIDES = of_command_line(ENTRIES, READ)
+    READ = workflow.config_settings.config
+    OVERRIDES = of_command_line(workflow.config_settings.config_args or [], READ)
     if IMPORTED:
         # The workflow that imports the study passes its config on, including the values of the command line.
         WRITTEN = {

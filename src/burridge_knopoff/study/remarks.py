@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from burridge_knopoff.model.initial import PAPER_V, PaperState, has_paper_numbers
 from burridge_knopoff.model.parameters import remarks_on_states
+from burridge_knopoff.provenance.record import read_study_record
 from burridge_knopoff.running.cost import cost_note, is_stiff
 from burridge_knopoff.study.study import Study
+
+#: Most rules that a line names.
+MOST_RULES = 3
 
 
 def remarks(study: Study, config: Mapping[str, Any]) -> list[str]:
@@ -48,3 +52,34 @@ def _state_remarks(study: Study) -> Iterator[str]:
             f"initial: {', '.join(fixed)}: the numbers of the paper, which are for v = {PAPER_V:g}; with "
             f"{', '.join(f'{name}: {{}}' for name in fixed)} they follow v"
         )
+
+
+def override_remarks(study: Study, results: str, config_file: str, overrides: Mapping[str, Any]) -> list[str]:
+    """Return a line if the values of --config change the results of a study in place.
+
+    results : folder of the study; config_file : its config; overrides : the values of --config
+    """
+    if not overrides or "study" in overrides:
+        return []
+    try:
+        if read_study_record(results)["config"] == study.config:
+            return []
+    except ValueError:
+        # Without results there is no record; those of this run would be replaced by the next run without --config.
+        pass
+    return [
+        f"--config {', '.join(overrides)}: {results} will hold the results of the changed config in place of those of "
+        f"{config_file}; to keep both, add study=NAME to --config"
+    ]
+
+
+def change_remarks(changes: Mapping[str, Sequence[str]]) -> list[str]:
+    """Return a line for each change of the config, or of the sources, since the files of some rules were made.
+
+    changes : {change: rules}, see `check.changes`
+    """
+    return [
+        f"changed: {change} ({', '.join(rules[:MOST_RULES])}{f' and {len(rules) - MOST_RULES} more' * truncated})"
+        for change, rules in changes.items()
+        for truncated in [len(rules) > MOST_RULES]
+    ]

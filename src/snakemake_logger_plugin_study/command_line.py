@@ -1,0 +1,53 @@
+"""What Snakemake does not tell a Snakefile of its command line, or would report with a traceback."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from burridge_knopoff.messages import format_value
+from burridge_knopoff.provenance.files import display_path
+from burridge_knopoff.study.yaml_file import ConfigError, read_config
+
+#: Entries of --config that Snakemake accepts.
+_ENTRY = re.compile(r"[a-zA-Z_][\w-]*\w=")
+#: Options with which Snakemake runs no jobs of the study.
+_RUNS_NONE = re.compile(
+    "--(touch|summary|detailed-summary|report(=|$)|list|rulegraph|filegraph|d3dag|dag$|lint|unlock|archive|cleanup|delete|"
+    "print-compilation|containerize|export|generate|draft|edit)|-n?tn?$|-[SDl]$"
+)
+
+
+def runs_jobs(arguments: Sequence[str]) -> bool:
+    """Return whether a command line, except for a dry run, runs jobs, rather than printing or marking something."""
+    return not any(_RUNS_NONE.match(argument) for argument in arguments)
+
+
+def check_one_config(paths: Sequence[str | Path]) -> None:
+    """Raise ConfigError, one line, for several config files: Snakemake reads targets that follow one as files."""
+    if len(paths) > 1:
+        first, second = map(display_path, paths[:2])
+        raise ConfigError(
+            f"--configfile: got {second} as a second file, expected one file: one file is one study; "
+            f"put a target before it: snakemake {second} --configfile {first}"
+        )
+
+
+def check_command_line(arguments: Sequence[str]) -> None:
+    """Raise ConfigError, one line, for a config file that cannot be read and for a malformed --config.
+
+    Snakemake creates its log handlers before it reads the config files; no other code of the project runs in between.
+    """
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    parser.add_argument("--configfile", "--configfiles", nargs="*", action="extend", default=[])
+    parser.add_argument("--config", "-C", nargs="*", action="extend", default=[])
+    options, _ = parser.parse_known_args(arguments)
+    check_one_config(options.configfile)
+    for path in options.configfile:
+        read_config(path)
+    for entry in options.config:
+        if not _ENTRY.match(entry):
+            keys = "key=value; a key of one letter can only be set in the config file"
+            raise ConfigError(f"--config: got {format_value(entry)}, expected {keys}")
