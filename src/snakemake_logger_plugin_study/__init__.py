@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Collection, Sequence
+from dataclasses import replace
 from functools import partial
 from logging import WARNING, LogRecord
 from typing import Any
@@ -56,8 +57,8 @@ class LogHandler(LogHandlerBase):
         self._shows_all = settings.verbose or settings.printshellcmds or settings.debug_dag
         #: Whether Snakemake has begun to execute a study, whether it found jobs, and whether it ended with an error.
         self._is_study = self._has_jobs = self._has_stopped = False
-        #: Largest number of simultaneous jobs on a cluster.
-        self._nodes = 0
+        #: The capacity of a cluster, in place of the cores of this machine.
+        self._cluster: dict[str, Any] = {}
         self._begin, self._run = 0.0, Run()
         self._picture: Live | None = None
         self._next_line = 0.0
@@ -91,7 +92,7 @@ class LogHandler(LogHandlerBase):
                 self._is_study = PLAN.study is not None
             # Without a limit it is sys.maxsize.
             case LogEvent.RESOURCES_INFO if 0 < (nodes := getattr(record, "nodes", None) or 0) < sys.maxsize:
-                self._nodes = nodes
+                self._cluster = {"cores": nodes, "capacity": f"with {format_count(nodes, 'job')} at a time"}
             case LogEvent.RUN_INFO:
                 self._has_jobs = True
             # The log does not have the ends of jobs with --quiet progress.
@@ -116,11 +117,9 @@ class LogHandler(LogHandlerBase):
 
     def _begin_display(self) -> None:
         """Begin to display a run whose first jobs start."""
-        run = self._run = PLAN.run
+        run = self._run = replace(PLAN.run, **self._cluster)
         self._begin = time.monotonic()
         self._next_line = self._begin + PACE
-        if self._nodes:
-            run.cores, run.capacity = self._nodes, f"with {format_count(self._nodes, 'job')} at a time"
         if not run.jobs:
             # As without hooks, Snakemake's own messages are all there is.
             self._shows_all = True

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections import Counter, defaultdict
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 from burridge_knopoff.dataset.decoding import decode_flags
@@ -45,7 +46,7 @@ def closing_lines(run: Run, seconds: float, stopped: bool) -> list[str]:
     for rule, (name, read) in _READERS.items():
         if rule in run.wanted:
             try:
-                lines += read(results / name)
+                lines.append(read(results / name))
             except Exception as error:
                 lines.append(f"{results / name}: cannot be read ({error})")
     return lines
@@ -74,40 +75,26 @@ def _remedies(failed: Sequence[Job]) -> list[str]:
     return ["Finished results are kept; the same command would fail again until the cause is removed."]
 
 
-def _verdicts(path: Path) -> list[str]:
+def _verdicts(path: Path) -> str:
     independent = json.loads(path.read_text(encoding="utf-8"))["independent_counts"]
     counts = ", ".join(f"{verdict} {count}" for verdict, count in independent.items())
-    return [f"{sum(independent.values())} independent claims of the paper: {counts} ({path.with_suffix('.md')})"]
+    return f"{sum(independent.values())} independent claims of the paper: {counts} ({path.with_suffix('.md')})"
 
 
-def _flag_counts(path: Path, name: str) -> Counter[str]:
-    """Return how often each meaning of a flag variable occurs."""
+def _flags(path: Path, what: str, name: str) -> str:
+    """Return how often each meaning of a flag variable of a summary occurs."""
     import xarray
 
     with xarray.open_dataset(path) as dataset:
-        return Counter(decode_flags(dataset[name]).values.flat)
+        counts = Counter(decode_flags(dataset[name]).values.flat)
+    return f"{what}: {', '.join(f'{word} {count}' for word, count in counts.most_common())} ({name} in {path})"
 
 
-def _completion(path: Path) -> list[str]:
-    counts = _flag_counts(path, "status")
-    total, completed = counts.total(), counts.pop("completed", 0)
-    reasons = ", ".join(f"{name} {count}" for name, count in sorted(counts.items()))
-    words = f"{total - completed} of {total} did not complete: {reasons} (status in {path})"
-    what = "catalogues" if path.stem == "catalogue" else "points"
-    return [f"{what}: {words if reasons else f'all {total} completed'}"]
-
-
-def _undetermined(path: Path) -> list[str]:
-    counts = _flag_counts(path, "kind")
-    count = counts["undetermined"]
-    return [f"points: kind of motion undetermined at {count} of {counts.total()} (kind in {path})"] if count else []
-
-
-#: {rule: (its file in the results, function that returns the lines about it)}
-_READERS: dict[str, tuple[str, Callable[[Path], list[str]]]] = {
+#: {rule: (its file in the results, function that returns a line about it)}
+_READERS: dict[str, tuple[str, Callable[[Path], str]]] = {
     "claims": ("summary/claims.json", _verdicts),
-    "mean_distance": ("summary/mean_distance.nc", _completion),
-    "agreement": ("summary/agreement.nc", _undetermined),
-    "catalogue": ("summary/catalogue.nc", _completion),
-    "report": ("report.html", lambda path: [f"report: {path}"]),
+    "mean_distance": ("summary/mean_distance.nc", partial(_flags, what="points", name="status")),
+    "agreement": ("summary/agreement.nc", partial(_flags, what="motion of the points", name="kind")),
+    "catalogue": ("summary/catalogue.nc", partial(_flags, what="catalogues", name="status")),
+    "report": ("report.html", "report: {}".format),
 }

@@ -11,8 +11,6 @@ from burridge_knopoff.messages import format_value
 from burridge_knopoff.provenance.files import display_path
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
 
-#: Entries of --config that Snakemake accepts.
-_ENTRY = re.compile(r"[a-zA-Z_][\w-]*\w=")
 #: Options with which Snakemake runs no jobs of the study.
 _RUNS_NONE = re.compile(
     "--(touch|summary|detailed-summary|report(=|$)|list|rulegraph|filegraph|d3dag|dag$|lint|unlock|archive|cleanup|delete|"
@@ -48,6 +46,6 @@ def check_command_line(arguments: Sequence[str]) -> None:
     for path in options.configfile:
         read_config(path)
     for entry in options.config:
-        if not _ENTRY.match(entry):
+        if not re.match(r"[a-zA-Z_][\w-]*\w=", entry):
             keys = "key=value; a key of one letter can only be set in the config file"
             raise ConfigError(f"--config: got {format_value(entry)}, expected {keys}")

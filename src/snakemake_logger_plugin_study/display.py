@@ -65,7 +65,7 @@ def progress_line(run: Run, now: float) -> str:
     *stages, total = run.stages(now)
     words = [f"{stage.name} {stage.counts[DONE]} of {stage.jobs}" for stage in stages if stage.counts[RUNNING]]
     jobs = ", ".join([*words, f"all {total.counts[DONE]} of {format_count(total.jobs, 'job')}"])
-    return f"{jobs}; {int(100 * total.share_done)} % done, {outlook(run, now)}"
+    return f"{jobs}; {int(100 * total.work_done / total.work)} % done, {outlook(run, now)}"
 
 
 def outlook(run: Run, now: float) -> str:
@@ -84,7 +84,7 @@ def picture(run: Run, begin: float) -> Group:
         running = f"{stage.counts[RUNNING]} running" if stage.counts[RUNNING] and not is_all else ""
         words = stage.name, f"{stage.counts[DONE]} of {stage.jobs}", running
         name, *cells = (Text(word, "bold" if running or is_all else "dim") for word in words)
-        table.add_row(name, ProgressBar(1.0, stage.share_done, BAR_WIDTH), *cells)
+        table.add_row(name, ProgressBar(stage.work, stage.work_done, BAR_WIDTH), *cells)
     table.columns[-2].justify = "right"
     so_far = f"{outlook(run, now)}, {format_elapsed(now - begin)} so far"
     lines = [(so_far, "bold red" if run.jobs_in(FAILED) else "bold")]

@@ -64,11 +64,6 @@ class Stage:
         """Number of its jobs."""
         return self.counts.total()
 
-    @property
-    def share_done(self) -> float:
-        """The share of its CPU time that is done."""
-        return self.work_done / self.work if self.work else 0.0
-
 
 @dataclass
 class Run:

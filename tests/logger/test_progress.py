@@ -13,6 +13,7 @@ from snakemake.settings.enums import Quietness
 from snakemake_interface_logger_plugins.common import LogEvent
 
 import snakemake_logger_plugin_study as plugin
+from burridge_knopoff.study.job_log import INTERRUPTED
 from snakemake_logger_plugin_study.display import (
     dry_run_lines,
     first_line,
@@ -154,16 +155,11 @@ BEGIN = ["Assuming", "2 jobs: points 2; a few seconds on 1 core"]
 TOLD = "failed: simulate a=0.0800: because (log x.log)"
 
 
-def test_a_run_is_told_from_its_begin_to_its_end(written):
-    last = [
-        "study x: done in 0 s on 1 core",
-        "made: results/x/points/x.nc, results/x/points/x.nc",
-        "report: results/x/report.html",
-    ]
-    assert written(*BEGUN, end(1), start(2), end(2)) == [*BEGIN, *last]
-    # With --quiet progress the log does not have the ends of jobs; with --quiet all nothing is written.
-    assert written(*BEGUN, end(1), quiet={Quietness.PROGRESS, Quietness.HOST}) == ["Assuming"]
-    assert "Error in rule simulate:" in written(*BEGUN, FAILURE, quiet={Quietness.PROGRESS, Quietness.HOST})
+def test_quiet_runs(written):
+    """With --quiet progress the log does not have the ends of jobs; with --quiet all nothing is written."""
+    quiet = {Quietness.PROGRESS, Quietness.HOST}
+    assert written(*BEGUN, end(1), quiet=quiet) == ["Assuming"]
+    assert "Error in rule simulate:" in written(*BEGUN, FAILURE, quiet=quiet)
     assert written(*BEGUN, FAILURE, quiet={Quietness.ALL}) == []
 
 
@@ -183,13 +179,11 @@ def test_a_job_that_ended_without_a_word_is_named_at_the_end(written, tmp_path):
     lines = written(*BEGUN, FAILURE)
     assert [line for line in lines if line.startswith("failed")] == [lines[-3]]
     assert lines[-1] == "Run the same command again to continue."
-    (tmp_path / "y.log").write_text("Traceback (most recent call last):\n  File\nKeyboardInterrupt\n")
     other = makeLogRecord({**vars(FAILURE), "jobid": 2, "log": ["y.log"]})
-    lines = written(*BEGUN, FAILURE, start(2), other)
-    assert lines[len(BEGIN) :][:2] == [
-        "study x: stopped after 0 s: 2 jobs interrupted",
-        "made: nothing",
-    ]
+    for last in ("Traceback (most recent call last):\n  File\nKeyboardInterrupt\n", f"bk simulate: {INTERRUPTED}\n"):
+        (tmp_path / "y.log").write_text(last)
+        lines = written(*BEGUN, FAILURE, start(2), other)
+        assert lines[len(BEGIN) :][:2] == ["study x: stopped after 0 s: 2 jobs interrupted", "made: nothing"]
 
 
 @pytest.mark.parametrize("options", [{"planned": 0}, {"study": None}, {"printshellcmds": True}])

@@ -88,7 +88,7 @@ def test_a_running_job_that_is_slower_than_expected_takes_as_long_as_its_log_sho
             file.write(f"searched: 10, 5.0 s, the longest 1.0 s\n{share}")
         left.append(study.time_left(8.0))
     assert left == [2.0, 2.0, 24.0, 8.0]
-    assert study.stages(8.0)[-1].share_done == 0.5
+    assert study.stages(8.0)[-1].work_done == 8.0
     assert study.time_left(1.0) == 9.0
     # The log of an earlier run is none.
     study.jobs[0].since = log.stat().st_mtime + 1.0
@@ -100,10 +100,9 @@ def test_the_share_done_is_one_of_time():
     study = run(*[done(1.0)] * 10, job("long", state=RUNNING, threads=2), short(state=FAILED), short())
     stage, total = study.stages(now=3.0)
     assert (total.name, total.jobs, total.counts[DONE]) == ("all", 13, 10)
-    assert total.share_done == stage.share_done == (10 + 2 * 3) / (10 + 10 + 1 + 1)
+    assert (total.work_done, total.work) == (stage.work_done, stage.work) == (10 + 2 * 3, 10 + 10 + 1 + 1)
     # A job that takes longer than expected is not more than done.
-    assert study.stages(now=100.0)[-1].share_done == 20 / 22
-    assert run().stages(0.0)[-1].share_done == 0.0
+    assert study.stages(now=100.0)[-1].work_done == 20
 
 
 def test_what_a_failed_job_blocks():

@@ -52,7 +52,7 @@ def times(study):
 
 
 def test_the_whole_study_is_computed_and_read(plane):
-    assert "points: all 8 completed" in plane.output
+    assert "points: completed 8 (status in " in plane.output
     # Its figures over the parameters are not those of the paper.
     assert "paper" not in plane.output
     results = plane.folder / RESULTS

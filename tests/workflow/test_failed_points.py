@@ -19,7 +19,7 @@ def summaries(limited):
 
 def test_the_study_ends_and_its_last_lines_count_them(limited):
     path = "results/limits/summary/mean_distance.nc"
-    assert f"points: 2 of 8 did not complete: diverged 2 (status in {path})" in limited.output
+    assert f"points: completed 6, diverged 2 (status in {path})" in limited.output
     assert "study limits: done in" in limited.output
 
 
