@@ -127,7 +127,7 @@ class LogHandler(LogHandlerBase):
             self._write(first_line(run, self._begin))
             if self._console.is_interactive:
                 draw = partial(picture, run, self._begin)
-                self._picture = Live(get_renderable=draw, console=self._console, transient=True)
+                self._picture = Live(get_renderable=draw, console=self._console, refresh_per_second=1, transient=True)
                 self._picture.start()
 
     def _write(self, text: str) -> None:
