@@ -46,16 +46,16 @@ def fraction_labels(searches: Sequence[Search], start: str, pool: ParallelMap) -
     while waiting:
         for k in waiting:
             labels[k] = labels[k][:0]
-        wide = [k for k in waiting if required_samples(searches[k].settings.fraction_width)]
-        while wide:
-            batch, firsts = [searches[k] for k in wide], [len(labels[k]) for k in wide]
-            counts = [further_states(labels[k], searches[k].settings.fraction_width) for k in wide]
-            parts = pool("labelled for basin fractions", partial(_label_next, start=start), batch, firsts, counts)
-            for k, part in zip(wide, parts, strict=True):
-                labels[k] = np.concatenate([labels[k], part])
-            enough = {k: required_states(labels[k], searches[k].settings.fraction_width) for k in wide}
-            labels = [numbers[: enough.get(k, len(numbers))] for k, numbers in enumerate(labels)]
-            wide = [k for k in wide if enough[k] is None]
+
+        def further(k: int, _: tuple[Search, int, int], part: np.ndarray) -> list[tuple[int, tuple[Search, int, int]]]:
+            labels[k] = np.concatenate([labels[k], part])
+            enough = required_states(labels[k], searches[k].settings.fraction_width)
+            labels[k] = labels[k][:enough]
+            return [] if enough is not None else [(k, _next_states(searches[k], labels[k]))]
+
+        wide = [k for k in reversed(waiting) if required_samples(searches[k].settings.fraction_width)]
+        states = [(k, _next_states(searches[k], labels[k])) for k in wide]
+        pool.work_through("labelled for basin fractions", partial(_label_next, start=start), states, further)
         lost = [k for k in waiting if (labels[k] == UNDETERMINED).any()]
         batch = [searches[k] for k in lost]
         looked = pool(
@@ -130,8 +130,14 @@ def _reduce_patience(search: Search, start: str) -> Search | None:
     return search
 
 
-def _label_next(search: Search, first: int, count: int, start: str) -> np.ndarray:
-    """Return the labels of the next `count` drawn states from number `first` on."""
+def _next_states(search: Search, labels: np.ndarray) -> tuple[Search, int, int]:
+    """Return a search, the number of the first drawn state to label next, and how many are labelled."""
+    return search, len(labels), further_states(labels, search.settings.fraction_width)
+
+
+def _label_next(states: tuple[Search, int, int], start: str) -> np.ndarray:
+    """Return the labels of the next drawn states; states : see `_next_states`."""
+    search, first, count = states
     part = _draw_states(search, start, first, count)
     if not search.attractors:
         return np.full(len(part[0]), UNDETERMINED, dtype=np.intc)

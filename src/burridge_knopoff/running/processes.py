@@ -55,14 +55,16 @@ class ParallelMap:
 
         span : fractions of the time of the whole job at which these calls begin and end, to log the progress
 
+        Calls begin with the last item: along a grid of a it takes longest, and no process then waits for it at the end.
         The time of the calls is logged in seconds; successive calls with the same `what` are logged together.
         """
         call = partial(_timed, self._begin(what), function)
         results = []
-        for result in self._pool.map(call, *items) if self._pool else map(call, *items):
+        backward = [sequence[::-1] for sequence in items]
+        for result in self._pool.map(call, *backward) if self._pool else map(call, *backward):
             results.append(self._record(result))
             self._report(span, len(results) / len(items[0]))
-        return results
+        return results[::-1]
 
     def work_through(
         self,
