@@ -84,7 +84,7 @@ def test_the_times_of_a_cycle_are_those_of_the_ledger(repository, claims):
 
 @pytest.mark.slow
 def test_the_time_of_the_study_is_that_of_a_dry_run(repository, tmp_path):
-    command = [sys.executable, "-m", "snakemake", "-n", "--snakefile", "Snakefile", "-d", str(tmp_path / "new")]
+    command = [sys.executable, "-m", "snakemake", "-n", "-c2", "--snakefile", "Snakefile", "-d", str(tmp_path / "new")]
     configured = [*command, "--configfile", str(repository / "config/paper.yaml")]
     process = subprocess.run(configured, check=True, capture_output=True, text=True, cwd=repository)
     [minutes] = re.findall(r"a run takes about (\d+) min on 2 cores", process.stdout + process.stderr)

@@ -10,6 +10,7 @@
 #include "creep.cpp"
 #include "ensemble.cpp"
 #include "groups.cpp"
+#include "local_exponents.cpp"
 #include "lockstep.cpp"
 #include "run.cpp"
 #include "time_stepping.h"
