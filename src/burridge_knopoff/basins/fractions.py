@@ -30,6 +30,9 @@ PATIENCE_MARGIN = 3.0
 #: The widths of the intervals are tested each time that this many states have been added.
 STEP = 50
 
+#: A search, the number of the first drawn state to label next, and how many are labelled.
+NextStates = tuple[Search, int, int]
+
 
 def fraction_labels(searches: Sequence[Search], start: str, pool: ParallelMap) -> tuple[list[Search], list[np.ndarray]]:
     """Return the searches, and for each the index of the attractor that each drawn state reaches.
@@ -47,13 +50,13 @@ def fraction_labels(searches: Sequence[Search], start: str, pool: ParallelMap) -
         for k in waiting:
             labels[k] = labels[k][:0]
 
-        def further(k: int, _: tuple[Search, int, int], part: np.ndarray) -> list[tuple[int, tuple[Search, int, int]]]:
+        def further(k: int, _: NextStates, part: np.ndarray) -> list[tuple[int, NextStates]]:
             labels[k] = np.concatenate([labels[k], part])
             enough = required_states(labels[k], searches[k].settings.fraction_width)
             labels[k] = labels[k][:enough]
             return [] if enough is not None else [(k, _next_states(searches[k], labels[k]))]
 
-        wide = [k for k in reversed(waiting) if required_samples(searches[k].settings.fraction_width)]
+        wide = [k for k in waiting if required_samples(searches[k].settings.fraction_width)]
         states = [(k, _next_states(searches[k], labels[k])) for k in wide]
         pool.work_through("labelled for basin fractions", partial(_label_next, start=start), states, further)
         lost = [k for k in waiting if (labels[k] == UNDETERMINED).any()]
@@ -130,13 +133,13 @@ def _reduce_patience(search: Search, start: str) -> Search | None:
     return search
 
 
-def _next_states(search: Search, labels: np.ndarray) -> tuple[Search, int, int]:
-    """Return a search, the number of the first drawn state to label next, and how many are labelled."""
+def _next_states(search: Search, labels: np.ndarray) -> NextStates:
+    """Return the states to label next, after those that have labels."""
     return search, len(labels), further_states(labels, search.settings.fraction_width)
 
 
-def _label_next(states: tuple[Search, int, int], start: str) -> np.ndarray:
-    """Return the labels of the next drawn states; states : see `_next_states`."""
+def _label_next(states: NextStates, start: str) -> np.ndarray:
+    """Return the labels of the next drawn states."""
     search, first, count = states
     part = _draw_states(search, start, first, count)
     if not search.attractors:

@@ -40,9 +40,13 @@ class Tangent {
     void widen(int count) {
         columns = count;
         for (Rows *row : {&position, &velocity}) row->reserve(size_t(vectors + 1) * count);
-        for (Rows *row : {&deceleration, &moving, &pull_scale}) row->reserve(count);
+        for (Rows *row : {&moving, &pull_scale}) row->reserve(count);
         for (Rows *row : {&rows, &speed_rows}) row->reserve(size_t(count) * TOGETHER);
-        lost.reserve(size_t(vectors) * count);
+        // With one clock `Exponents` maps the perturbations through stops and starts.
+        if (!L::ONE_CLOCK) {
+            deceleration.reserve(count);
+            lost.reserve(size_t(vectors) * count);
+        }
         rates.reserve(size_t(count) * LENGTH);
         speeds.reserve(size_t(count) * LENGTH * TOGETHER);
     }

@@ -78,18 +78,19 @@ class ParallelMap:
 
         items : pairs of a name and an item
         successors : takes name, item and result, in any order of the items, and returns further pairs
-        span : see `__call__`
+        span, order of the calls : see `__call__`
         """
         call, done = partial(_timed, self._begin(what), function), 0
+        backward = [*items][::-1]
         if self._pool is None:
-            todo = deque(items)
+            todo = deque(backward)
             while todo:
                 name, item = todo.popleft()
                 todo.extend(successors(name, item, self._record(call(item))))
                 done += 1
                 self._report(span, done / (done + len(todo)))
             return
-        running = {self._pool.submit(call, item): (name, item) for name, item in items}
+        running = {self._pool.submit(call, item): (name, item) for name, item in backward}
         try:
             while running:
                 for future in wait_for(running, return_when=FIRST_COMPLETED).done:
