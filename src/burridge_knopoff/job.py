@@ -8,6 +8,10 @@ import sys
 from pathlib import Path
 from typing import Any
 
+# Snakemake sets this to the threads of the rule, but those are processes here. With several threads the last digits of
+# a product would depend on the number of cores, and processes would wait for each other.
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
+
 import xarray
 
 from burridge_knopoff.dataset.summary import open_summary, write_summary

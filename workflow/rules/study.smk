@@ -65,7 +65,7 @@ ROOT = Path(f"{workflow.current_basedir}").resolve().parents[1]
 SNAKEFILES = [ROOT / "Snakefile", ROOT / "workflow/Snakefile"]
 IMPORTED = Path(workflow.main_snakefile).resolve() not in SNAKEFILES
 CONFIG_FILE = [*workflow.configfiles, workflow.main_snakefile][0]
-# A job has one thread; the linear-algebra library would start one for every core, and keep it busy.
+# The linear-algebra library would start a thread for every core, and keep it busy.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Jobs draw into files. The backend that a notebook names may not be installed here, and matplotlib would not load.
 os.environ.pop("MPLBACKEND", None)

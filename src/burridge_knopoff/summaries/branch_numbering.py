@@ -47,7 +47,7 @@ def merge_laws(
     numbers = number_intermediate_branches(numbers, further)
     everywhere = merge(further, numbers, refined.VARIABLES, "Attractors at refined values of a")
     everywhere = common_branch_names(everywhere, on_grid)
-    return on_grid, everywhere, rotation.summarize(everywhere, models)
+    return on_grid, everywhere, rotation.summarize(everywhere, models, cores)
 
 
 def merge(

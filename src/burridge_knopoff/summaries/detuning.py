@@ -13,6 +13,7 @@ mutual synchronization of two self-sustained oscillators, and its range of detun
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,6 +55,14 @@ class DetunedMotion:
 def detuned_model(model: Model, detuning: float) -> Model:
     """Return the model with the mass of its last block multiplied by 1 + detuning."""
     return model.at(**{f"mass[{model.blocks}]": model.chain.masses[-1] * (1.0 + detuning)})
+
+
+def detuned_motions(model: Model, start: ChainState, detunings: Sequence[float], exponents: int) -> list[DetunedMotion]:
+    """Return the motion after each of several detunings; each begins at the last state of the one before."""
+    motions: list[DetunedMotion] = []
+    for detuning in detunings:
+        motions.append(detuned_motion(model, motions[-1].final if motions else start, detuning, exponents))
+    return motions
 
 
 def detuned_motion(model: Model, start: ChainState, detuning: float, exponents: int) -> DetunedMotion:

@@ -9,7 +9,9 @@ frequencies, the Lyapunov exponents and the shares of the normal modes then deci
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import Any
 
 import numpy as np
 import xarray
@@ -20,9 +22,10 @@ from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.kind import REGULAR, MotionKind
 from burridge_knopoff.motion.modes import sliding_modes
 from burridge_knopoff.motion.rotation import rotation_number
+from burridge_knopoff.running.processes import ParallelMap, parallel_map
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.study.formatting import format_count, span
-from burridge_knopoff.summaries.detuning import TRANSIENT, WINDOW, detuned_model, detuned_motion
+from burridge_knopoff.summaries.detuning import TRANSIENT, WINDOW, detuned_model, detuned_motions
 from burridge_knopoff.summaries.sentences import lines_of
 
 TITLE = "Rotation number of branch 1, and branches 1 and 2 after detuning"
@@ -102,10 +105,11 @@ COORDINATES = {
 }
 
 
-def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Dataset:
+def summarize(refined: xarray.Dataset, models: Sequence[Model], processes: int = 1) -> xarray.Dataset:
     """Return the rotation number of branch 1, whether it is locked, and the branches without synchrony after detuning.
 
     refined : the summary of that name; models : one for each of its laws, at any a
+    processes : number of processes; the results do not depend on it
     """
     exponents = Settings().exponent_count(models[0].chain)
     sizes = {
@@ -127,6 +131,7 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
     # Where the middle block oscillates an odd number of times in a period, the branch is a mirror pair: use one side.
     slots = np.isin(refined["branch"].values, DETUNED_BRANCHES) & (refined["side"].values >= 0)
     slots &= np.isin(refined["kind"].values, REGULAR)
+    rotating, detuned = [], []
     for law, value, slot in np.argwhere(slots).tolist():
         at = law, value
         attractor = refined.isel(law=law, value=value, attractor=slot)
@@ -134,14 +139,19 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
         start = ChainState(attractor["position"].values - model.sliding_offset, velocity, velocity == 0.0)
         branch = attractor["branch"].item()
         if branch == BRANCH:
-            values["rotation_number"][at], values["rotation_error"][at] = rotation_number(model, start, DURATION)
+            rotating.append((at, model, start))
             values["locked"][at] = attractor["kind"].item() == MotionKind.PERIODIC
-        for k, detuning in enumerate(DETUNINGS if values["in_grid"][at] else ()):
-            motion = detuned_motion(model, start, detuning, exponents)
-            start = motion.final
+        if values["in_grid"][at]:
+            detuned.append(((*at, DETUNED_BRANCHES.index(branch)), model, start))
+    rotation = partial(rotation_number, duration=DURATION)
+    detune = partial(detuned_motions, detunings=DETUNINGS, exponents=exponents)
+    with parallel_map(processes) as pool:
+        for place, (number, error) in _for_each(pool, "rotation numbers", rotation, rotating):
+            values["rotation_number"][place], values["rotation_error"][place] = number, error
+        for place, motions in _for_each(pool, "branches detuned", detune, detuned):
             for name in ("frequency", "frequency_error", "exponent", "exponent_error", "mode_share", "end_ratio",
                          "end_phase"):  # fmt: skip
-                values[f"detuned_{name}"][*at, DETUNED_BRANCHES.index(branch), k] = getattr(motion, name)
+                values[f"detuned_{name}"][place] = [getattr(motion, name) for motion in motions]
     attributes = {
         "branch": BRANCH,
         "duration": DURATION,
@@ -157,6 +167,19 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
     return summary(
         "Rotation number of branch 1, and detuned branches", VARIABLES, values, coordinates, attributes, module=__name__
     )
+
+
+def _for_each(
+    pool: ParallelMap,
+    what: str,
+    function: Callable[..., Any],
+    motions: Sequence[tuple[tuple[int, ...], Model, ChainState]],
+) -> Iterator[tuple[tuple[int, ...], Any]]:
+    """Yield (place in the arrays, result of the function) of motions, given as (place, model, state)."""
+    for (place, *_), result in zip(
+        motions, pool(what, function, *([m[k] for m in motions] for k in (1, 2))), strict=True
+    ):
+        yield place, result
 
 
 def digest(data: xarray.Dataset) -> str:
