@@ -102,8 +102,10 @@ void Lockstep::aim(int lane) {
     distance_time[lane] = next(observer.distance_time, observer.next_distance);
     trajectory_time[lane] = next(observer.trajectory_time, observer.next_trajectory);
     side[lane] = observed[lane] ? observer.side : 0.0;
-    highest_speed[lane] = averaged[lane] ? std::min(observer.highest_speed[0], observer.highest_speed[1]) : NEVER;
-    lowest_force[lane] = averaged[lane] ? std::max(observer.lowest_force[0], observer.lowest_force[1]) : -NEVER;
+    for (int stage : {TRANSIENT, WINDOW}) {
+        highest_speed[stage][lane] = averaged[lane] ? observer.highest_speed[stage] : NEVER;
+        lowest_force[stage][lane] = averaged[lane] ? observer.lowest_force[stage] : -NEVER;
+    }
 }
 
 // Integrate every lane to its next event, or to the end of its series.
@@ -229,8 +231,9 @@ void Lockstep::average(vec length, mask where) {
         value[j] = root(moved * moved + sped * sped);
     }
     const vec mean = mean_of(value, error);
-    const mask simple = (error <= (RELATIVE_ERROR * mean + ABSOLUTE_ERROR) * mean) & ~resting & (ends > length);
-    const vec integral = 2.0 * half * mean;
+    const mask simple = ((error <= (RELATIVE_ERROR * mean + ABSOLUTE_ERROR) * mean) | resting) & (ends > length);
+    const vec constant = (stop - begin) * root(d[0] * d[0] + rate[0] * rate[0]);
+    const vec integral = select(resting, constant, 2.0 * half * mean);
     for (int lane = 0; lane < LANES; lane++) {
         if (!where[lane] || !averaged[lane]) continue;
         Observer &observer = own[lane]->observer;
@@ -271,10 +274,15 @@ void Lockstep::cross(double crossing, double length, int lane) {
 }
 
 void Lockstep::extremes(vec length) {
+    const vec until_window = until(transient);
+    const mask in_transient = until_window > 0.0, in_window = length > until_window;
     for (int i = 0; i < blocks; i++) {
         const mask slips = state.slip[i] != vec{};
         const vec bound = search.bound_in_piece(i);
-        const int which = bits(active & (bound > select(slips, highest_speed, layout.threshold[i] - lowest_force)));
+        const auto is_new = [&](Stage stage) {
+            return bound > select(slips, highest_speed[stage], layout.threshold[i] - lowest_force[stage]);
+        };
+        const int which = bits(active & ((in_transient & is_new(TRANSIENT)) | (in_window & is_new(WINDOW))));
         for (int lane = 0; which >> lane; lane++) {
             if (!(which >> lane & 1)) continue;
             const size_t place = size_t(i) * LANES + lane;

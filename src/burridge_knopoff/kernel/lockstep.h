@@ -53,7 +53,8 @@ class Lockstep : private Example, public TrajectoryLanes {
     // The next times of the observers, whether J is averaged, and the extremes so far.
     vec end{}, transient{}, batch_begin{}, batch_end{}, distance_time{}, trajectory_time{}, since_event{}, side{},
         ends_apart{};
-    vec highest_speed{}, lowest_force{}, longest_follow{}, steps{}, most_steps{};
+    vec highest_speed[2]{}, lowest_force[2]{};  // by Stage
+    vec longest_follow{}, steps{}, most_steps{};
     mask observed{}, averaged{}, running{}, halts{}, accumulating{}, changed{};
     std::vector<mask> in_section;
     Trajectories::Rows apart, apart_rate;  // coefficients of d and d'

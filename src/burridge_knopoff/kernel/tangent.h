@@ -307,6 +307,8 @@ class Tangent {
     template <int COUNT, int COLUMNS, bool DAMPED = false>
     void propagate_columns(const L &layout, int v) {
         // x_n of vector i is row[i · columns + c], u_n is speed[(n · columns + c) · COUNT + i].
+        // Columns of a short row are summed side by side, since each sum waits for its last term.
+        constexpr int BESIDE = COLUMNS ? COLUMNS : 1;
         const int count = COLUMNS ? COLUMNS : columns, last = *std::max_element(degree, degree + CLOCKS);
         const int most_rates = *std::max_element(rate_terms, rate_terms + CLOCKS);
         const vec own_terms = lanes_of(degree);
@@ -324,29 +326,34 @@ class Tangent {
             vec *next = speed + size_t(n + 1) * count * COUNT;
             for (int c = 0; DAMPED && c < count; c++)
                 for (int i = 0; i < COUNT; i++) speed_rows[i * count + c] = now[c * COUNT + i];
-            for (int c = 0; c < count; c++) {
-                const vec *rate = rates.at(size_t(c) * LENGTH);
-                vec change[COUNT]{};
-                if (most_rates > 1)
-                    for (int j = 0; j < n; j++)
-                        for (int i = 0; i < COUNT; i++)
-                            change[i] += rate[n - j] * speed[(size_t(j) * count + c) * COUNT + i];
-                const vec scale = pull_scale[c], diagonal = layout.diagonal[c];
-                for (int i = 0; i < COUNT; i++) {
-                    const vec *x = row + i * count;
-                    vec pull;
-                    if constexpr (COLUMNS)
-                        pull = layout.template pull_in_row<COLUMNS>(x, c);
-                    else
-                        pull = layout.pull(x, c);
-                    vec force = pull - diagonal * x[c];
-                    if constexpr (DAMPED) {
-                        const vec *u = speed_rows.at(size_t(i) * count);
-                        force += layout.drag(u, c) - layout.damping_diagonal[c] * u[c];
+            for (int first = 0; first < count; first += BESIDE) {
+                vec changes[BESIDE * COUNT]{};
+                // Rates from `most_rates` on are 0.
+                for (int j = std::max(0, n + 1 - most_rates); j < n; j++)
+                    for (int c = 0; c < BESIDE; c++) {
+                        const vec rate = rates[size_t(first + c) * LENGTH + n - j];
+                        const vec *before = speed + (size_t(j) * count + first + c) * COUNT;
+                        for (int i = 0; i < COUNT; i++) changes[c * COUNT + i] += rate * before[i];
                     }
-                    change[i] += scale * force;
-                    next[c * COUNT + i] = (change[i] + rate[0] * now[c * COUNT + i]) * factor;
-                    add(velocity[i * count + c], next[c * COUNT + i], own);
+                for (int c = first; c < first + BESIDE; c++) {
+                    vec *change = changes + (c - first) * COUNT;
+                    const vec scale = pull_scale[c], diagonal = layout.diagonal[c], rate = rates[size_t(c) * LENGTH];
+                    for (int i = 0; i < COUNT; i++) {
+                        const vec *x = row + i * count;
+                        vec pull;
+                        if constexpr (COLUMNS)
+                            pull = layout.template pull_in_row<COLUMNS>(x, c);
+                        else
+                            pull = layout.pull(x, c);
+                        vec force = pull - diagonal * x[c];
+                        if constexpr (DAMPED) {
+                            const vec *u = speed_rows.at(size_t(i) * count);
+                            force += layout.drag(u, c) - layout.damping_diagonal[c] * u[c];
+                        }
+                        change[i] += scale * force;
+                        next[c * COUNT + i] = (change[i] + rate * now[c * COUNT + i]) * factor;
+                        add(velocity[i * count + c], next[c * COUNT + i], own);
+                    }
                 }
             }
             for (int c = 0; c < count; c++)
