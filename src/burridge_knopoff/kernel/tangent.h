@@ -306,9 +306,9 @@ class Tangent {
     // COLUMNS : the number of columns of a short row of blocks, 0 for any; see Series::fill
     template <int COUNT, int COLUMNS, bool DAMPED = false>
     void propagate_columns(const L &layout, int v) {
-        // x_n of vector i is row[i · columns + c], u_n is speed[(n · columns + c) · COUNT + i].
         // Columns of a short row are summed side by side, since each sum waits for its last term.
         constexpr int BESIDE = COLUMNS ? COLUMNS : 1;
+        // x_n of vector i is row[i · columns + c], u_n is speed[(n · columns + c) · COUNT + i].
         const int count = COLUMNS ? COLUMNS : columns, last = *std::max_element(degree, degree + CLOCKS);
         const int most_rates = *std::max_element(rate_terms, rate_terms + CLOCKS);
         const vec own_terms = lanes_of(degree);

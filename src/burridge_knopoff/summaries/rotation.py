@@ -176,10 +176,8 @@ def _for_each(
     motions: Sequence[tuple[tuple[int, ...], Model, ChainState]],
 ) -> Iterator[tuple[tuple[int, ...], Any]]:
     """Yield (place in the arrays, result of the function) of motions, given as (place, model, state)."""
-    for (place, *_), result in zip(
-        motions, pool(what, function, *([m[k] for m in motions] for k in (1, 2))), strict=True
-    ):
-        yield place, result
+    places, models, states = ([motion[k] for motion in motions] for k in range(3))
+    yield from zip(places, pool(what, function, models, states), strict=True)
 
 
 def digest(data: xarray.Dataset) -> str:
