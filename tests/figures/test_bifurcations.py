@@ -8,7 +8,7 @@ from matplotlib.colors import to_hex
 from burridge_knopoff.continuation.branch_changes import Change
 from burridge_knopoff.figures.bifurcations import draw
 from burridge_knopoff.figures.branches import branch_colors
-from burridge_knopoff.figures.palette import OTHER_BRANCHES
+from burridge_knopoff.figures.palette import BRANCHES, OTHER_BRANCHES
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 
 EDGE = ("law", "a", "a_error", "mean_distance", "kind", "change", "from_branch", "to_branch")
@@ -19,7 +19,9 @@ def test_a_bifurcation_that_is_not_located_is_as_wide_as_its_error():
     attractors = xr.Dataset(
         {name: (names, np.ones((1, 2, 1), dtype=int)) for name in ("branch", "basin_count", "mean_distance")},
         {"law": ["linearized"], "a": [0.1, 0.2]},
-    ).assign(branch_number=("number", [1]), branch_name=("number", ["alternating (1)"]))
+    ).assign(
+        branch_number=("number", [1]), branch_name=("number", ["alternating (1)"]), sample_count=(names[:2], [[9, 9]])
+    )
     none = {f"orbit_{name}": ("orbit", []) for name in ("law", "a", "mean_distance", "stable", "segment", "branch")}
     bifurcation = {
         "law": "linearized",
@@ -46,7 +48,11 @@ def test_a_symbol_lies_on_a_curve():
     attractors = xr.Dataset(
         {"branch": (names, branch), "basin_count": (names, branch), "mean_distance": (names, 0.045 + 0.0 * branch)},
         {"law": ["linearized"], "a": a},
-    ).assign(branch_number=("number", [1, 2]), branch_name=("number", ["mirror pair (1)", "mirror pair (2)"]))
+    ).assign(
+        branch_number=("number", [1, 2]),
+        branch_name=("number", ["mirror pair (1)", "mirror pair (2)"]),
+        sample_count=(names[:2], [[9] * 3]),
+    )
     orbits = {"law": ["linearized"] * 3, "a": [0.12, 0.15, 0.16], "mean_distance": [0.045] * 3, "stable": [1] * 3}
     orbits |= {"segment": [0, 1, 0], "branch": [1, 2, 1]}
     variables = {f"orbit_{name}": ("orbit", values) for name, values in orbits.items()}
@@ -62,13 +68,18 @@ def test_a_symbol_lies_on_a_curve():
 
 def test_the_legend_names_all_branches_that_are_drawn():
     names = ("law", "a", "attractor")
-    branch = np.arange(12).reshape(1, 1, 12)
+    count = len(BRANCHES) + 3
+    branch = np.arange(count).reshape(1, 1, count)
     # An attractor without a periodic orbit is a point.
     attractors = xr.Dataset(
         {"branch": (names, branch), "basin_count": (names, 100 - branch), "mean_distance": (names, 0.01 * branch)},
         {"law": ["linearized"], "a": [0.1]},
-    ).assign(branch_number=("number", range(12)), branch_name=("number", [f"motion ({n})" for n in range(12)]))
-    drawn = [0, 2, 10, 11]
+    ).assign(
+        branch_number=("number", range(count)),
+        branch_name=("number", [f"motion ({n})" for n in range(count)]),
+        sample_count=(names[:2], [[1000]]),
+    )
+    drawn = [0, 2, count - 2, count - 1]
     orbits = {
         "law": ["linearized"] * 4,
         "a": [0.1] * 4,
@@ -82,5 +93,5 @@ def test_the_legend_names_all_branches_that_are_drawn():
     words = {text.get_text().strip() for text in legend.get_texts()}
     # Some have the colour that branches of small basins share.
     named = {f"motion ({n})" for n, color in branch_colors(attractors).items() if color != OTHER_BRANCHES}
-    assert len(named) < 12
+    assert len(named) < count
     assert words - {""} == {"stable orbits", *named, "other branches"}

@@ -7,6 +7,7 @@ from burridge_knopoff.figures.branches import branch_colors, map_colors, map_par
 from burridge_knopoff.figures.palette import BRANCHES, OTHER_BRANCHES
 
 NAMES = ("branch", "basin_count")
+SAMPLES = 100
 
 
 def attractors(values, reached=0):
@@ -17,9 +18,8 @@ def attractors(values, reached=0):
     grid = np.arange(max(values.values()))[:, None]
     branch = np.where(grid < np.array(list(values.values())), np.array(list(values)), -1)
     counts = np.vectorize(lambda number: reached.get(number, 0) if isinstance(reached, dict) else reached)(branch)
-    return xr.Dataset(
-        {name: (("law", "a", "attractor"), item[None]) for name, item in zip(NAMES, (branch, counts), strict=True)}
-    )
+    data = {name: (("law", "a", "attractor"), item[None]) for name, item in zip(NAMES, (branch, counts), strict=True)}
+    return xr.Dataset(data | {"sample_count": (("law", "a"), np.full((1, len(grid)), SAMPLES))})
 
 
 def test_branches_at_few_values_share_a_colour():
@@ -31,12 +31,25 @@ def test_branches_at_few_values_share_a_colour():
 
 
 def test_files_with_more_or_fewer_branches_agree_on_the_colours_of_the_first():
-    few, many = attractors({0: 1, 1: 1, 2: 1}), attractors({0: 9, 1: 9, 2: 9, 9: 2, 10: 5, 12: 8})
+    few, many = attractors({0: 1, 1: 1, 2: 1}), attractors({0: 9, 1: 9, 2: 9, 15: 2, 16: 5, 18: 8})
     colors = branch_colors(many)
     assert {number: colors[number] for number in (0, 1, 2)} == branch_colors(few)
     assert len(set(colors.values())) == 6
-    # Branch 9 would have the colour of branch 1, and branch 10 that of branch 2.
-    assert [colors[number] for number in (2, 9, 10)] == [BRANCHES[place] for place in (2, 3, 4)]
+    # Branch 15 would have the colour of branch 1, and branch 16 that of branch 2.
+    assert [colors[number] for number in (2, 15, 16)] == [BRANCHES[place] for place in (2, 3, 4)]
+
+
+def test_the_branch_of_nearly_all_states_at_one_value_has_a_colour():
+    """And one of few states at all values, together more of them, is grey."""
+    count = len(BRANCHES) + 1
+    colors = branch_colors(
+        attractors(
+            {number: 1 if number == 2 else 40 for number in range(count)},
+            {**dict.fromkeys(range(count), 20), 2: 90, 5: 6},
+        )
+    )
+    assert colors[2] == BRANCHES[2]
+    assert [number for number, color in colors.items() if color == OTHER_BRANCHES] == [5]
 
 
 def test_a_large_basin_at_few_values_has_a_colour_before_a_small_one_at_many():
@@ -56,8 +69,12 @@ def test_a_map_has_the_colours_of_the_other_figures_and_distinguishes_grey_branc
     assert len(set(colors.values())) == 2 + len(grey)
 
 
-def test_one_of_two_mirror_images_is_not_called_alternating():
+def test_the_name_of_one_of_two_mirror_images_says_that_the_symmetry_is_broken():
     """A branch has the name of most of its attractors; at some a its motion may be one of a mirror pair."""
     pixels = xr.Dataset({name: ("pixel", values) for name, values in {"branch": [7, 7, 7], "side": [0, 1, -1]}.items()})
     parts = map_parts(pixels, {7: BRANCHES[2]}, {7: "alternating (7)"})
-    assert [part.name for part in parts] == ["mirror pair (7+)", "alternating (7)", "mirror pair (7−)"]
+    assert [part.name for part in parts] == [
+        "alternating, symmetry broken (7+)",
+        "alternating (7)",
+        "alternating, symmetry broken (7−)",
+    ]

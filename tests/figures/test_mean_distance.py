@@ -30,6 +30,7 @@ def attractors():
             "branch": (names, np.array([[[-1], [1], [1]]] * 2)),
             "mean_distance": (names, np.array([[[np.nan], [0.1], [0.2]]] * 2)),
             "basin_count": (names, np.array([[[0], [3], [3]]] * 2)),
+            "sample_count": (names[:2], np.full((2, 3), 10)),
             "initial_branch": (("law", "contact", "start", "initial", "a"), reached),
             "branch_number": ("number", [1]),
             "branch_name": ("number", ["alternating (1)"]),

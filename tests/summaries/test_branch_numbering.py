@@ -98,7 +98,7 @@ def test_branches_found_by_a_deeper_search_do_not_renumber_long_branches(short):
     [
         ("synchronized", 0, "synchronized"),
         ("alternating (7)", 0, "alternating (7)"),
-        ("alternating (7)", 1, "mirror pair (7+)"),
+        ("alternating (7)", 1, "alternating, symmetry broken (7+)"),
         ("mirror pair, block 2 never sticks (12)", -1, "mirror pair, block 2 never sticks (12−)"),
     ],
 )

@@ -24,9 +24,14 @@ def branch_names(dataset: xarray.Dataset) -> dict[int, str]:
 def side_name(name: str, side: int) -> str:
     """Return the name of a branch on one of its sides, 1 or −1: there the motion is one of a mirror pair.
 
-    "alternating (7)" becomes "mirror pair (7+)"; on side 0 the name remains.
+    "mirror pair (3)" becomes "mirror pair (3+)", and "alternating (7)", a branch of motions that are mostly their own
+    mirror images, "alternating, symmetry broken (7+)". On side 0 the name remains.
     """
-    return f"{name[:-1].replace('alternating', 'mirror pair', 1)}{' +−'[side]})" if side else name
+    if not side:
+        return name
+    words, _, number = name[:-1].rpartition(" (")
+    broken = ", symmetry broken" if words.startswith("alternating") else ""
+    return f"{words}{broken} ({number}{' +−'[side]})"
 
 
 def largest_basin_fraction(attractors: xarray.Dataset, branch: int) -> tuple[float, float]:

@@ -74,7 +74,9 @@ def _points(panel: Axes, refined: xarray.Dataset) -> None:
         say(panel, "no attractor")
     for number, color in KINDS.items():
         chosen = kind == number
-        look: Any = {"markersize": 2.6, "markeredgecolor": "0.3", "markeredgewidth": 0.3}
+        # Transient chaos is rare: two or three points of a study.
+        size = 5.0 if number == MotionKind.TRANSIENT_CHAOS else 2.6
+        look: Any = {"markersize": size, "markeredgecolor": "0.3", "markeredgewidth": 0.3}
         panel.plot(a[chosen], mean[chosen], "o", color=color, **look)
 
 

@@ -8,7 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from burridge_knopoff.figures.branches import OTHERS, branch_colors, fraction_curves, undetermined_share
+from burridge_knopoff.attractors.lookup import branch_names
+from burridge_knopoff.figures.branches import OTHERS, branch_colors, fraction_curves, named_colors, undetermined_share
 from burridge_knopoff.figures.style import (
     label_panels,
     legend_below,
@@ -26,18 +27,20 @@ CATEGORY = "Attractors"
 INPUTS = ("attractors",)
 CAPTION = """\
 Top: the fraction of sampled initial states that reach each branch of attractors, versus a, with 95 % Wilson intervals
-(bands or bars). Branches with small basins are counted together (grey). Crosses show the fraction of undetermined
-states. Bottom: ⟨J⟩ of the attractor followed while a is raised (black) or lowered (open) in small steps; where they
-differ, there is hysteresis.
+(bands or bars). Branches that few states reach at any a are counted together. Crosses show the fraction of
+undetermined states. Bottom: ⟨J⟩ of the attractor followed while a is raised (filled) or lowered (open) in small steps;
+where they differ, there is hysteresis.
 """
+
+UNDETERMINED_STATES = "undetermined"
 
 
 @styled
 def draw(attractors: xarray.Dataset) -> Figure:
     """Draw, for each law, the fraction of sampled states that reach each branch, and ⟨J⟩ in sweeps up and down in a.
 
-    Both mirror images of a branch are counted together, and so are all branches with small basins. Bands are 95 %
-    Wilson intervals.
+    Both mirror images of a branch are counted together, and so are all branches without a colour of their own. Bands
+    are 95 % Wilson intervals.
     """
     laws = attractors["law"].values
     figure, panels = new_figure(page_width(len(laws)), 5.2, rows=2, columns=len(laws))
@@ -50,7 +53,9 @@ def draw(attractors: xarray.Dataset) -> Figure:
     panels[0].set_ylabel("fraction of initial states")
     panels[0].set_ylim(-0.02, 1.02)
     panels[len(laws)].set_ylabel(r"$\langle J\rangle$ along a sweep")
-    shares, paths = (legend_entries(row)[0] for row in (panels[: len(laws)], panels[len(laws) :]))
+    (shares, names), (paths, _) = (legend_entries(row) for row in (panels[: len(laws)], panels[len(laws) :]))
+    order = [*named_colors(colors, branch_names(attractors)), UNDETERMINED_STATES]
+    shares = [handle for _, handle in sorted(zip(names, shares, strict=True), key=lambda pair: order.index(pair[0]))]
     if shares:
         shares.append(Patch(facecolor="0.8", edgecolor="none", label="95 % interval"))
     legend_below(figure, shares, paths)
@@ -74,7 +79,7 @@ def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) 
         # A band has no width at an isolated value.
         alone = there & ~(is_one & (np.append(there[1:], False) | np.append(False, there[:-1])))
         panel.vlines(a[alone], interval[alone, 1], interval[alone, 2], color=color, alpha=0.4, linewidth=1.6)
-    panel.plot(a, undetermined_share(attractors), "kx", markersize=3.5, markeredgewidth=0.8, label="undetermined")
+    panel.plot(a, undetermined_share(attractors), "kx", markersize=3.5, markeredgewidth=0.8, label=UNDETERMINED_STATES)
 
 
 def _sweeps(panel: Axes, attractors: xarray.Dataset) -> None:

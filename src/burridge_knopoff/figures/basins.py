@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 import xarray
+from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike
 
 from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.figures.branches import map_colors, map_parts
-from burridge_knopoff.figures.style import PAGE, label_panels, legend_below, styled
+from burridge_knopoff.figures.style import COLUMN, PAGE, label_panels, legend_below, styled
 
 TITLE = "Basins of attraction"
 CATEGORY = "Attractors"
@@ -23,8 +23,8 @@ INPUTS = ("basins", "attractors")
 FROM_STUDY = ("marked_states",)
 CAPTION = """\
 Basins of attraction in the plane of the initial positions U_1(0) and U_N(0) of the end blocks. Each pixel has the
-colour of the branch that its state reaches. The two motions of a mirror pair have + and − after the number, and the
-second has a lighter shade. Black: undetermined. Numbers mark the study's initial states in this plane.
+colour of the branch that its state reaches. Where the motions of a branch are mirror images of each other, its number
+has + or −, and − has a lighter shade. The study's initial states in this plane are marked with their names.
 """
 
 COLUMNS = 2
@@ -40,7 +40,7 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: Mapp
     count = basins.sizes["map"]
     columns = min(COLUMNS, count)
     rows = -(-count // columns)
-    figure = Figure(figsize=(PAGE if columns > 1 else 0.6 * PAGE, 3.2 * rows + 0.5), layout="constrained")
+    figure = Figure(figsize=(PAGE if columns > 1 else COLUMN, 3.2 * rows + 0.5), layout="constrained")
     panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     colors = map_colors(attractors, np.unique(basins["branch"]).tolist())
     names = branch_names(attractors)
@@ -67,20 +67,30 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: Mapp
             )
         panel.imshow(picture, origin="lower", extent=extent, interpolation="nearest", aspect="auto")
         panel.set_box_aspect(1.0)
-        for index, (x, y) in enumerate(points[number] for points in there.values()):
-            panel.plot(x, y, "o", markersize=8, markerfacecolor="white", markeredgecolor="black", markeredgewidth=0.7)
-            panel.plot(x, y, **_number(index))
+        for name, points in there.items():
+            _mark(panel, name, points[number], extent)
         if number >= count - columns:
             panel.set_xlabel("$U_1(0)$")
             panel.tick_params(labelbottom=True)
         if number % columns == 0:
             panel.set_ylabel(f"$U_{{{basins.attrs['plane_position'].size}}}(0)$")
-    states = [Line2D([], [], **_number(index), label=f"state {name}") for index, name in enumerate(there)]
-    legend_below(figure, [patches[key] for key in sorted(patches, key=lambda key: (key[0] < 0, *key))], states)
+    legend_below(figure, [patches[key] for key in sorted(patches, key=lambda key: (key[0] < 0, *key))])
     label_panels(list(panels.flat)[:count], titles)
     return figure
 
 
-def _number(index: int) -> dict[str, Any]:
-    """Return the marker of an initial state, its number."""
-    return {"marker": f"${index + 1}$", "color": "black", "markersize": 4.5, "markeredgewidth": 0.3, "linestyle": ""}
+def _mark(panel: Axes, name: str, point: np.ndarray, extent: tuple[float, ...]) -> None:
+    """Mark an initial state with a point and its name, on the side of the point that has more room."""
+    x, y = point.tolist()
+    is_left = x > 0.5 * (extent[0] + extent[1])
+    panel.plot(x, y, "o", markersize=4.5, markerfacecolor="white", markeredgecolor="black", markeredgewidth=0.8)
+    text = panel.annotate(
+        name,
+        (x, y),
+        (-5 if is_left else 5, 0),
+        textcoords="offset points",
+        ha="right" if is_left else "left",
+        va="center",
+        fontsize=8.0,
+    )
+    text.set_path_effects([withStroke(linewidth=2.0, foreground="white")])

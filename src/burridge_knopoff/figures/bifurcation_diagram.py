@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray
 from matplotlib.figure import Figure
@@ -17,12 +19,16 @@ INPUTS = ("bifurcation_diagram",)
 CAPTION = """\
 Section points W' on the section W = 0 versus a, for each law and initial state: upward crossings have W' > 0, downward
 crossings W' < 0. W is the sum of the positions relative to uniform sliding, or the position of one block if the config
-sets `section`. Crossings slower than 10⁻⁹ are rounding errors of uniform sliding and are left out. At a = 0 the paper's
-laws are constant: free oscillations neither grow nor decay, and their several frequencies give a band.
+sets `section`. At W' = −Nv, with W of all N blocks, all of them stick at the crossing. Crossings slower than 10⁻⁹ are
+rounding errors of uniform sliding and are left out. At a = 0 the paper's laws are constant: free oscillations neither
+grow nor decay, and their several frequencies give a band.
 """
 
-# With more values of a than this, points are drawn small, to resolve dense clouds; with fewer, large, to be visible.
+# With more values of a than this, the points of a cloud are drawn small, to resolve it; with fewer, large.
 FEW = 30
+# A run with at most so many different section points has no cloud, and its points are drawn large.
+DISTINCT = 24
+SMALL, LARGE = 1.2, 2.6
 
 
 @styled
@@ -38,24 +44,29 @@ def draw(bifurcation: xarray.Dataset) -> Figure:
         upward, downward = (section_points(bifurcation, law, state, direction) for direction in (1, -1))
         for a, velocity in (last_points(*upward), last_points(*downward)):
             real = np.abs(velocity) > ROUNDING
-            # A cloud of 10^5 points is stored as an image in the PDF, not as 10^5 shapes.
-            panel.plot(
-                a[real],
-                velocity[real],
-                ".",
-                markersize=1.2 if len(grid) > FEW else 3.6,
-                markeredgewidth=0,
-                color="black",
-                rasterized=True,
-            )
+            a, velocity = a[real], velocity[real]
+            is_cloud = np.isin(a, dense_values(a, velocity)) if len(grid) > FEW else np.zeros(len(a), dtype=bool)
+            for chosen, size in ((is_cloud, SMALL), (~is_cloud, LARGE)):
+                # A cloud of 10^5 points is stored as an image in the PDF, not as 10^5 shapes.
+                look: Any = {"markersize": size, "markeredgewidth": 0, "color": "black", "rasterized": True}
+                panel.plot(a[chosen], velocity[chosen], ".", **look)
         show_all(panel, grid)
         panel.axhline(0.0, color="0.6", linewidth=0.5, zorder=0)
-        if not panel.get_lines()[0].get_xdata().size:
+        if not (np.abs(last_points(*upward)[1]) > ROUNDING).any():
             # In uniform sliding, only rounding crosses the section.
             say(panel, STAYS if upward[0].size else NEVER_UPWARD)
         titles.append(f"{state}, {law} law")
     label_panels(panels, titles)
     return figure
+
+
+def dense_values(a: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    """Return the values of a at which more than DISTINCT section points differ by a thousandth of their range."""
+    if not len(a):
+        return a
+    steps = np.round(1000.0 * velocity / max(np.ptp(velocity), ROUNDING))
+    values, counts = np.unique(np.unique(np.column_stack([a, steps]), axis=0)[:, 0], return_counts=True)
+    return values[counts > DISTINCT]
 
 
 def last_points(a: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

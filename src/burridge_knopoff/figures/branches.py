@@ -17,24 +17,29 @@ OTHERS = "other branches"
 
 
 def branch_colors(attractors: xarray.Dataset) -> dict[int, str]:
-    """Return the colour of each branch: its own for the branches that most states reach over all a, otherwise grey.
+    """Return the colour of each branch: its own for branches that hold many states somewhere, otherwise grey.
 
-    The branch number decides the colour, so that files of one model agree. If two branches would have the same colour,
-    the lower number keeps it and the other branch takes the next free colour.
+    Branches are ranked by the largest basin fraction that they have at any a, under any law. The branch number decides
+    the colour, so that files of one model agree. If two branches would have the same colour, the lower number keeps it
+    and the other branch takes the next free colour.
     """
-    branch, reached = (attractors[name].values for name in ("branch", "basin_count"))
-    # Without sampled states, or for equal basins, the branch found at more values of a comes first.
+    branch, count, samples = (attractors[name].values for name in ("branch", "basin_count", "sample_count"))
+    share = count / np.maximum(samples, 1)[..., None]
+    # Without sampled states, or for equal fractions, the branch found at more values of a comes first.
     present = {int(n): branch == n for n in np.unique(branch) if n > 0}
-    sizes = {n: (int(reached[where].sum()), int(where.any(axis=-1).sum())) for n, where in present.items()}
+    sizes = {
+        n: (float(np.where(where, share, 0.0).sum(axis=-1).max()), int(where.any(axis=-1).sum()))
+        for n, where in present.items()
+    }
     ranked = sorted(sizes, key=lambda n: (-sizes[n][0], -sizes[n][1], n))
     colors = {0: BRANCHES[0]} if (branch == 0).any() else {}
-    count = len(BRANCHES) - 1
-    free = dict.fromkeys(range(count))
-    for number in sorted(ranked[:count]):
-        place = min(free, key=lambda k: (k - number + 1) % count)
+    most = len(BRANCHES) - 1
+    free = dict.fromkeys(range(most))
+    for number in sorted(ranked[:most]):
+        place = min(free, key=lambda k: (k - number + 1) % most)
         del free[place]
         colors[number] = BRANCHES[1 + place]
-    return colors | dict.fromkeys(ranked[count:], OTHER_BRANCHES)
+    return colors | dict.fromkeys(ranked[most:], OTHER_BRANCHES)
 
 
 def map_colors(attractors: xarray.Dataset, branches: Collection[int]) -> dict[int, str]:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 import xarray
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.style import label_panels, panel_table, say, scale_to_decades, styled
@@ -18,13 +19,15 @@ CAPTION = """\
 The phase-space distance J between the end blocks versus time τ in single runs from each initial state, on a linear and
 on a logarithmic scale; the latter leaves out values below 10⁻¹⁵, which are rounding. If the initial relaxation, in the
 first hundredth of the run, is more than five times as high as the rest, the linear scale cuts it off and the panel
-gives J(0).
+gives J(0). Inset: the recorded end of the run.
 """
 
 # Smaller J is rounding.
 FLOOR = 1e-15
 # An initial relaxation this many times higher than the rest is cut off.
 CUT = 5.0
+# A panel has room for an inset below J that stays above this fraction of its top.
+ROOM = 0.4
 
 
 @styled
@@ -41,11 +44,16 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
         linear.plot(time, distance, color="black", linewidth=0.5)
         top = linear_top(distance)
         linear.set_ylim(0.0, top)
+        if top is not None:
+            _inset(linear, point, top)
         if top is not None and np.nanmax(distance) > top:
             linear.text(0.07, 0.95, f"$J(0)={distance[0]:.2g}$", va="top", transform=linear.transAxes)
         logarithmic.plot(time, np.where(distance >= FLOOR, distance, np.nan), color="black", linewidth=0.5)
         logarithmic.set_yscale("log")
         scale_to_decades(logarithmic)
+        if np.isfinite(highest := logarithmic.dataLim.y1):
+            # A whole decade above would stay empty.
+            logarithmic.set_ylim(top=2.0 * highest)
         for panel in (linear, logarithmic):
             panel.axvline(point.attrs["transient"], color="0.5", linestyle=":", linewidth=0.8, label="averaging begins")
             if not distance.any():
@@ -54,6 +62,19 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
     table[0, 0].legend(loc="upper right", handlelength=1.2)
     label_panels(table.flat, titles + [f"{title}, logarithmic" for title in runs])
     return figure
+
+
+def _inset(panel: Axes, point: xarray.Dataset, top: float) -> None:
+    """Draw J at the recorded end of a run, which the panel shows as a band, below the band if there is room."""
+    settled = point["distance"].values[len(point["distance"]) // 100 :]
+    if not np.nanmin(settled) > ROOM * top or not point.sizes.get("trajectory_time"):
+        return
+    position, velocity = (point[name].isel(block=[0, -1]).diff("block").values for name in ("position", "velocity"))
+    inset = panel.inset_axes((0.06, 0.12, 0.88, 0.9 * np.nanmin(settled) / top - 0.12))
+    inset.plot(point["trajectory_time"], np.hypot(position, velocity), color="black", linewidth=0.6)
+    inset.tick_params(labelsize=6.5, labelleft=False, pad=1.5)
+    inset.margins(x=0.0)
+    inset.locator_params(nbins=4)
 
 
 def linear_top(distance: np.ndarray) -> float | None:

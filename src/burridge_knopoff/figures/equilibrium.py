@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.palette import dashes, law_color, law_symbol
-from burridge_knopoff.figures.style import PAGE, lone_marker, new_figure, styled
+from burridge_knopoff.figures.style import COLUMN, lone_marker, new_figure, styled
 
 TITLE = "Stability of uniform sliding"
 CATEGORY = "Model"
@@ -22,7 +22,7 @@ of the paper's chain with the linearized law.
 @styled
 def draw(equilibrium: xarray.Dataset) -> Figure:
     """Draw the largest real part of the eigenvalues versus a, and growth rates of the simulated tangent flow."""
-    figure, (panel,) = new_figure(0.6 * PAGE, 2.9)
+    figure, (panel,) = new_figure(COLUMN, 2.5)
     a = equilibrium["a"].values
     panel.plot(a, 0.5 * a, color="0.85", linewidth=5.0, solid_capstyle="butt", label="$a/2$")
     for n, law in enumerate(equilibrium["law"].values):

@@ -62,7 +62,8 @@ def draw(
             _branches(panels[0, column], attractors.sel(law=law), colors)
             _conventions(panels[1, column], attractors.sel(law=law), colors)
         _label_constant_friction(panels[0, column], mean_distance.sel(law=law))
-        _runs(panels[0, column], mean_distance.sel(law=law))
+        # Small over the attractors, so that they do not hide the colours of the branches.
+        _runs(panels[0, column], mean_distance.sel(law=law), 1.9 if attractors is None else 0.9)
         if orbits is not None and np.isfinite(critical := orbits["critical_a"].sel(law=law).item()):
             look = {"color": "0.4", "linestyle": ":", "linewidth": 0.9}
             marked["a_c"] = panels[0, column].axvline(critical, zorder=0, label="$a_c$", **look)
@@ -99,20 +100,19 @@ def _branches(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -
             attractors["mean_distance"].values[slots],
             "o",
             color=colors[int(number)],
-            markersize=5.0,
+            markersize=6.0,
             markeredgewidth=0,
-            alpha=0.6,
             zorder=1,
         )
 
 
-def _runs(panel: Axes, runs: xarray.Dataset) -> None:
+def _runs(panel: Axes, runs: xarray.Dataset, size: float) -> None:
     if runs["mean_distance"].isnull().all():
         say(panel, "no run completed")
     for index, initial in enumerate(runs["initial"].values):
         run = runs.sel(initial=initial)
         error = 3.0 * run["mean_distance_error"].values
-        panel.errorbar(run["a"].values, run["mean_distance"].values, error, elinewidth=0.5, **state_symbol(index))
+        panel.errorbar(run["a"].values, run["mean_distance"].values, error, elinewidth=0.5, **state_symbol(index, size))
 
 
 def _label_constant_friction(panel: Axes, runs: xarray.Dataset) -> None:

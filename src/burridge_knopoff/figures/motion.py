@@ -24,7 +24,8 @@ CAPTION = """\
 The run from the state {initial}. (a) Velocities U_i' and (b) positions U_i − vτ of all blocks versus time τ at the end
 of the run. (c) The return map of the section W = 0, where W is the sum of the positions relative to uniform sliding: W'
 at each upward crossing in the window versus W' at the previous one. Periodic motion gives a point for each crossing in
-a period (a single point if there is one crossing); quasiperiodic motion gives curves. (d) W' at the upward crossings
+a period (a single point if there is one crossing); quasiperiodic motion gives curves. Counted with the downward
+crossings, which are not drawn, a period has twice as many. (d) W' at the upward crossings
 versus time.
 """
 

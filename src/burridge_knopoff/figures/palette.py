@@ -2,7 +2,8 @@
 
 Branches of attractors, kinds of motion and blocks have hues of their own; the synchronized branch and synchronized
 motion, which are the same, share one. Laws and solvers are black and grey, with line styles and markers. Ascending
-values of one quantity are shades of a ramp. Within a family, colours also differ for colour-blind readers.
+values of one quantity are shades of a ramp. Colours of branches and of kinds differ for colour-blind
+readers too, which `tests/figures/test_palette.py` computes.
 """
 
 from __future__ import annotations
@@ -10,12 +11,18 @@ from __future__ import annotations
 from typing import Any
 
 import matplotlib as mpl
-from matplotlib.colors import to_hex
+import numpy as np
+from matplotlib.colors import ListedColormap, to_hex
 
-SYNCHRONIZED = "#0072B2"
+SYNCHRONIZED = "#0A5AB6"
 
-#: Branches of attractors: the synchronized branch has the first colour, branch 1 the second, and so on.
-BRANCHES = (SYNCHRONIZED, "#D55E00", "#999933", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#7A3B12")
+#: Branches of attractors: the synchronized branch has the first colour, branch 1 the second, and so on. Found by a
+#: search: any two of them, and grey, differ by 20 in CIELAB for every kind of colour vision, the first four in print
+#: without colour too, by their lightness.
+BRANCHES = (
+    *(SYNCHRONIZED, "#E86E00", "#FCC000", "#0C3000", "#7800FF", "#E430FF", "#3C9C60", "#E4183C", "#D89CF0", "#54540C"),
+    *("#30E478", "#6C003C", "#906090", "#6C0078", "#3C009C"),
+)
 #: Branches beyond those, and states whose branch is undetermined.
 OTHER_BRANCHES = "#999999"
 UNDETERMINED = "#000000"
@@ -23,10 +30,13 @@ UNDETERMINED = "#000000"
 OTHER_SHADES = (OTHER_BRANCHES, "#666666", "#CCCCCC", "#444444")
 
 #: {number of a kind of motion: colour}. Undetermined motion is white; from periodic to chaotic motion colours darken.
-KINDS = {-1: "#FFFFFF", 0: SYNCHRONIZED, 1: "#DCCBEA", 2: "#B58AD1", 3: "#4A0D63", 4: "#F4A3B5", 5: "#7BA7D9"}
+KINDS = {-1: "#FFFFFF", 0: SYNCHRONIZED, 1: "#DECCDA", 2: "#9992C2", 3: "#3C0820", 4: "#D7936B", 5: "#062278"}
 
 #: Blocks. Of three, the end blocks have a light and a dark shade of one hue, the middle block another hue.
 BLOCKS = ("#6CCBC0", "#E0457B", "#00423C", "#B08D57", "#7F9A20", "#8C6BB1", "#555555")
+
+#: Ascending values of one quantity, from light to dark; without the yellow that a white page would hide.
+RAMP = ListedColormap(mpl.colormaps["viridis_r"](np.linspace(0.2, 1.0, 256)))
 
 #: Laws, together with `DASHES` and `law_marker`.
 LAWS = ("#000000", "#8A8A8A", "#4D4D4D", "#B5B5B5")
@@ -77,7 +87,7 @@ def state_symbol(index: int, size: float = 1.9) -> dict[str, Any]:
 
 def ramp(count: int) -> list[str]:
     """Return the colours of `count` ascending values of one quantity, from light to dark."""
-    return [to_hex(mpl.colormaps["viridis_r"](0.15 + 0.8 * k / max(1, count - 1))) for k in range(count)]
+    return [to_hex(RAMP(k / max(1, count - 1))) for k in range(count)]
 
 
 def pale(color: str) -> str:

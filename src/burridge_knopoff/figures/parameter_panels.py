@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import ACROSS, cells, even_indices, label_panels, new_figure, page_width, show_all
+from burridge_knopoff.figures.style import ACROSS, COLUMN, PAGE, cells, even_indices, label_panels, new_figure, show_all
 
 #: Most values of each further parameter that have panels.
 MOST = 6
@@ -38,9 +38,9 @@ def draw_panels(
     look : arguments of `pcolormesh`
     """
     varied, parts = varied_parameters(grid), list(panel_parts(grid))
-    across = min(len(parts), ACROSS)
+    across = panels_across(len(parts), len(parts) // grid.sizes["law"])
     down = -(-len(parts) // across)
-    size = page_width(max(across, 2)), 0.6 + 2.5 * down
+    size = COLUMN if across == 1 else PAGE, 0.6 + (2.3 if across < ACROSS else 2.0) * down
     empty = range(len(parts), down * across)
     figure, panels = new_figure(*size, down, across, share_columns=False, empty=empty)
     first, drawn = grid[varied[0]].values, None
@@ -57,6 +57,16 @@ def draw_panels(
             panel.set_ylabel(f"${_symbol(varied[1])}$" if len(varied) > 1 else label)
     label_panels(panels, [title for title, _ in parts])
     return figure, panels, drawn
+
+
+def panels_across(count: int, of_law: int) -> int:
+    """Return how many panels are side by side: those of a law if they fit, else as many as leave no panel alone.
+
+    count, of_law : numbers of all panels and of those of one law
+    """
+    if 1 < of_law <= ACROSS or count <= ACROSS:
+        return min(of_law if of_law > 1 else count, ACROSS)
+    return 2 if count % ACROSS and not count % 2 else ACROSS
 
 
 def _parameters(grid: xarray.Dataset) -> list[str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 import xarray
 from matplotlib.axes import Axes
@@ -15,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullFormatter
 
 from burridge_knopoff.catalogue.slope import format_p_value
+from burridge_knopoff.figures.palette import RAMP
 from burridge_knopoff.figures.style import (
     PAGE,
     StyledFigure,
@@ -137,7 +137,7 @@ def draw_map(panel: Axes, run: xarray.Dataset, norm: Normalize) -> None:
     low, high = run["bar_first_block"].values[there] - 0.5, run["bar_last_block"].values[there] + 0.5
     times, magnitudes = run["shown_time"].values[event], run["shown_magnitude"].values[event]
     bars = np.stack([np.stack([low, times], axis=1), np.stack([high, times], axis=1)], axis=1)
-    panel.add_collection(LineCollection(list(bars), array=magnitudes, norm=norm, cmap="viridis_r", linewidth=0.9))
+    panel.add_collection(LineCollection(list(bars), array=magnitudes, norm=norm, cmap=RAMP, linewidth=0.9))
     panel.set_ylim(times.min(), max(times.max(), times.min() + 1.0))
 
 
@@ -166,7 +166,7 @@ def add_magnitudes(figure: Figure, norm: Normalize, panels: list[Axes]) -> None:
     """Add the bar of colours of maps, if any of them shows an event."""
     if not any(panel.collections for panel in panels):
         return
-    figure.colorbar(ScalarMappable(norm, mpl.colormaps["viridis_r"]), ax=panels, label=MAGNITUDE, aspect=30)
+    figure.colorbar(ScalarMappable(norm, RAMP), ax=panels, label=MAGNITUDE, aspect=30)
 
 
 @styled

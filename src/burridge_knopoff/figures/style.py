@@ -24,8 +24,9 @@ from burridge_knopoff.provenance.files import write_whole
 
 Arguments = ParamSpec("Arguments")
 
-#: Width of two journal columns, in inches.
+#: Width of two journal columns and of one, 17.8 and 8.6 cm, in inches.
 PAGE = 7.0
+COLUMN = 3.4
 
 # Colour of shaded cells.
 SHADE = "0.9"
@@ -112,8 +113,8 @@ def new_figure(
 
 
 def page_width(columns: int) -> float:
-    """Return the width in inches of a figure with `columns` columns: a page for two, in proportion for more."""
-    return PAGE * max(1.0, columns / 2)
+    """Return the width in inches of a figure with `columns` columns: a page for up to three, in proportion for more."""
+    return PAGE * max(1.0, columns / 3)
 
 
 def panel_table(
