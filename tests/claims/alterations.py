@@ -11,7 +11,7 @@ import xarray
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.ledger import judge
 from burridge_knopoff.claims.paper import CLAIMS
-from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, READING, Verdict
+from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, READING, UNDECIDED, Verdict
 from burridge_knopoff.continuation.branch_changes import Change
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
@@ -261,10 +261,10 @@ CASES: list[tuple[str, str, Alteration]] = [
     # Synchrony that appears up to an a may reach further, also beyond the grid.
     ("upper_edge", READING, reached(0, initial="minus", a=lambda a: a < 0.145)),
     ("upper_edge", READING, reached(0, initial="minus")),
-    ("upper_edge", NOT_TESTABLE, both(UNKNOWN_ABOVE, lost_at(np.nan))),
+    ("upper_edge", UNDECIDED, both(UNKNOWN_ABOVE, lost_at(np.nan))),
     ("upper_edge", NOT_TESTABLE, reached(1, initial="minus")),
     ("lower_edge", HOLDS, reached(1, initial="minus", a=lambda a: a < 0.0049)),
-    ("lower_edge", NOT_TESTABLE, reached(1, initial="minus", a=lambda a: a < 0.0051)),
+    ("lower_edge", UNDECIDED, reached(1, initial="minus", a=lambda a: a < 0.0051)),
     ("lower_edge", FAILS, reached(1, initial="minus", a=lambda a: a < 0.0101)),
     ("lower_edge", FAILS, reached(1, initial="minus", a=lambda a: a < 0.03)),
     ("lower_edge", FAILS, reached(1, initial="minus", law="nonlinear", a=lambda a: a < 0.03)),
@@ -273,7 +273,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("lower_edge", READING, reached(0, initial="minus", a=0.0025, law="nonlinear")),
     ("lower_edge", NOT_TESTABLE, reached(1, initial="minus")),
     # A value of a at which synchrony is not known leaves both possibilities open.
-    ("lower_edge", NOT_TESTABLE, reached(-1, initial="minus", a=lambda a: a < 0.0201)),
+    ("lower_edge", UNDECIDED, reached(-1, initial="minus", a=lambda a: a < 0.0201)),
     ("plus_does_not_synchronize", FAILS, both(synchronized(1, initial="plus"), reached(0, initial="plus"))),
     ("plus_does_not_synchronize", CONVENTION, reached(0, initial="plus", **OTHER)),
     ("plus_does_not_synchronize", LOOSELY, synchronized(1, initial="plus", a=0.005)),
@@ -343,7 +343,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("phases_decide", READING, alter("phases", "branch", 2, phase_difference=30.0, inner_share=0.0)),
     ("phases_decide", NOT_TESTABLE, lambda world: world.update(phases=world["phases"].sel(inner_share=[0.3, 1.0]))),
     ("phases_decide", NOT_TESTABLE, alter("phases", "slipping_amplitude", 0.001)),
-    ("phases_decide", NOT_TESTABLE, few("phases", state=15)),
+    ("phases_decide", UNDECIDED, few("phases", state=15)),
     ("regular_below", FAILS, everywhere("agreement", "kind", CHAOTIC)),
     ("regular_below", CONVENTION, alter("agreement", "kind", CHAOTIC)),
     ("regular_below", LOOSELY, alter("agreement", "kind", CHAOTIC, a=ONE_OF_MANY)),
@@ -357,7 +357,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("transition", FAILS, chaos_from(9.0)),
     ("transition", LOOSELY, chaos_from(0.115)),
     # The step of the grid between the last value without chaos and the first with it leaves both verdicts open.
-    ("transition", NOT_TESTABLE, chaos_from(0.12)),
+    ("transition", UNDECIDED, chaos_from(0.12)),
     ("transition", NOT_TESTABLE, few("refined", value=9)),
     # Transient chaos does not count.
     ("transition", FAILS, alter("refined", "kind", TRANSIENT)),
@@ -370,7 +370,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("branch_locked", HOLDS, parted(detuning=0.8)),
     ("branch_locked", HOLDS, parted(detuning=0.1)),
     ("branch_locked", LOOSELY, parted(a=lambda a: (a > 0.03) & (a < 0.036))),
-    ("branch_locked", NOT_TESTABLE, parted(a=lambda a: (a > 0.03) & (a < 0.05))),
+    ("branch_locked", UNDECIDED, parted(a=lambda a: (a > 0.03) & (a < 0.05))),
     # Blocks that only springs move keep one frequency too, but then three exponents are 0.
     ("branch_locked", FAILS, alter("rotation", "detuned_exponent", -0.001)),
     # If they move in one mode they have one frequency, but are not locked.
@@ -393,7 +393,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("locking_precedes_chaos", LOOSELY, alter("bifurcations", "kind", BifurcationKind.UNDETERMINED, bifurcation=13)),
     (
         "locking_precedes_chaos",
-        NOT_TESTABLE,
+        UNDECIDED,
         alter("bifurcations", "kind", BifurcationKind.UNDETERMINED, bifurcation=[13, 14]),
     ),
     (
@@ -407,7 +407,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     # Tori in two of twelve cases may be chance.
     (
         "locking_precedes_chaos",
-        NOT_TESTABLE,
+        UNDECIDED,
         alter("bifurcations", "motion_before", QUASIPERIODIC, bifurcation=[14, 15]),
     ),
     # Earlier chaos, a passed bifurcation or undetermined motion before it excludes an onset of chaos.
@@ -464,7 +464,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("plus_line_disappears", HOLDS, cloud(1.0, -0.1)),
     # One value of 22, three, and half of them.
     ("plus_line_disappears", LOOSELY, line_from(0.095)),
-    ("plus_line_disappears", NOT_TESTABLE, line_from(0.085)),
+    ("plus_line_disappears", UNDECIDED, line_from(0.085)),
     ("plus_line_disappears", CONVENTION, line_from(0.05)),
     # Under other conventions both states may reach the same attractor.
     ("plus_line_disappears", CONVENTION, reached(1, initial="minus")),
@@ -623,7 +623,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("laws_agree", FAILS, alter("agreement", "difference", 0.02)),
     # 41 of 44 points: all of one curve and nineteen values of the other. 38 of 44 leave the verdict open.
     ("laws_agree", LOOSELY, means_apart(lambda a: (a > 0.08) & (a < 0.095), initial="plus")),
-    ("laws_agree", NOT_TESTABLE, means_apart(lambda a: (a > 0.072) & (a < 0.096), initial="plus")),
+    ("laws_agree", UNDECIDED, means_apart(lambda a: (a > 0.072) & (a < 0.096), initial="plus")),
     ("laws_agree", LOOSELY, means_apart(ONE_OF_MANY, initial="plus")),
     ("laws_agree", NOT_TESTABLE, alter("agreement", "difference_error", 0.01, a=lambda a: a > 0.03, initial="plus")),
     ("laws_agree", HOLDS, alter("agreement", "difference_error", 0.01, a=ONE_OF_MANY)),
@@ -642,7 +642,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ),
     (
         "laws_agree_in_kind",
-        NOT_TESTABLE,
+        UNDECIDED,
         alter("agreement", "kind", PERIODIC, initial="plus", law="nonlinear", a=lambda a: (a > 0.072) & (a < 0.096)),
     ),
     # The kind of motion and ⟨J⟩ are judged separately.
@@ -651,10 +651,10 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("two_blocks_agree", READING, alter("two_blocks", "difference", 0.1, state=0)),
     ("two_blocks_agree", LOOSELY, alter("two_blocks", "difference", 0.1, state=0, a=0.1)),
     # Two values of fourteen leave a reading open.
-    ("two_blocks_agree", NOT_TESTABLE, alter("two_blocks", "difference", 0.1, state=0, a=[0.1, 0.12])),
+    ("two_blocks_agree", UNDECIDED, alter("two_blocks", "difference", 0.1, state=0, a=[0.1, 0.12])),
     (
         "two_blocks_agree",
-        NOT_TESTABLE,
+        UNDECIDED,
         both(
             *(
                 alter("two_blocks", name, value, a=[0.1, 0.12])
@@ -704,7 +704,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     # The laws are compared at every a: one of twenty-two does not contradict the claim.
     ("solutions_agree", LOOSELY, alter("agreement", "kind", CHAOTIC, law="nonlinear", a=ONE_OF_MANY)),
     # If solvers differ at one of six points, these are too few to decide.
-    ("solutions_agree", NOT_TESTABLE, alter("solvers", "difference", 0.05, a=0.02, initial="plus", solver="rk4")),
+    ("solutions_agree", UNDECIDED, alter("solvers", "difference", 0.05, a=0.02, initial="plus", solver="rk4")),
     ("solutions_agree", NOT_TESTABLE, alter("agreement", "kind", UNDETERMINED, a=lambda a: a > 0.05)),
     ("solutions_agree", FAILS, both(CHAOS_OF_RUNS, alter("attractors", "kind", CHAOTIC, law="nonlinear"))),
     ("solutions_agree", FAILS, both(CHAOS_OF_RUNS, alter("attractors", "kind", UNDETERMINED))),

@@ -65,8 +65,8 @@ def test_the_tolerance_at_which_a_verdict_changes_is_given_to_one_per_cent(below
     now = judge(NOTHING, parameters)
     (text,) = changes(judge, NOTHING, parameters, now)
     other = {below: above, above: below}[now.verdict]
-    head, value = text.removesuffix(" (here 1)").rsplit(" ", 1)
-    assert head == f"{other} if the tolerance is at {relation}"
+    head, value = text.removesuffix(" (it is 1)").rsplit(" ", 1)
+    assert head == f"{other} if the tolerance were at {relation}"
     assert judge(NOTHING, {"tolerance": float(value)}).verdict == other
     assert float(value) == pytest.approx(place, rel=0.01)
 
@@ -74,7 +74,7 @@ def test_the_tolerance_at_which_a_verdict_changes_is_given_to_one_per_cent(below
 def test_a_share_changes_by_its_distance_from_one():
     judge = judge_with_change("share", 0.85, FAILS, HOLDS)
     (text,) = changes(judge, NOTHING, {"share": 0.9}, Verdict(HOLDS, ""))
-    assert text.startswith("fails if the required share of states is at most 0.8")
+    assert text.startswith("fails if the required share of states were at most 8")
     # The distance of 0.75 from 1 is more than twice 0.1.
     assert changes(judge_with_change("share", 0.75, FAILS, HOLDS), NOTHING, {"share": 0.9}, Verdict(HOLDS, "")) == []
 
@@ -84,15 +84,15 @@ def test_a_choice_that_leaves_too_little_data_is_given(other):
     """There are too few states for a larger share, and only one value at which the claim can be judged."""
     judge = judge_with_change("share", 0.93, HOLDS, NOT_TESTABLE)
     (text,) = changes(judge, NOTHING, {"share": 0.9}, Verdict(HOLDS, ""))
-    head, value = text.removesuffix(" (here 0.9)").rsplit(" ", 1)
-    assert head == "not testable if the required share of states is at least"
-    assert 0.93 <= float(value) < 0.935
+    head, value = text.removesuffix(" % (it is 90 %)").rsplit(" ", 1)
+    assert head == "not testable if the required share of states were at least"
+    assert 93.0 <= float(value) < 93.5
 
     def only(_evidence, parameters):
         return Verdict(HOLDS if parameters["near"] == 1.0 else other, "")
 
     assert changes(only, NOTHING, {"near": 1.0}, Verdict(HOLDS, "")) == [
-        f"{other} if the distance that counts as near is not exactly 1"
+        f"{other} if the distance that counts as near were not exactly 1"
     ]
 
 
@@ -104,8 +104,8 @@ def test_the_nearest_of_several_changes_is_given():
         return Verdict(HOLDS if where < 1.2 else FAILS if where < 1.5 else NOT_TESTABLE, "")
 
     (text,) = changes(judge, NOTHING, {"tolerance": 1.0}, Verdict(HOLDS, ""))
-    assert text.startswith("fails if the tolerance is at least 1.2")
-    assert float(text.removesuffix(" (here 1)").rsplit(" ", 1)[1]) == pytest.approx(1.2, rel=0.01)
+    assert text.startswith("fails if the tolerance were at least 1.2")
+    assert float(text.removesuffix(" (it is 1)").rsplit(" ", 1)[1]) == pytest.approx(1.2, rel=0.01)
 
 
 def test_both_halves_of_the_grid_are_one_choice():
@@ -114,7 +114,7 @@ def test_both_halves_of_the_grid_are_one_choice():
     def judge(evidence, _parameters):
         return Verdict(HOLDS if evidence.summaries["mean_distance"].sizes["a"] == 3 else NOT_TESTABLE, "")
 
-    assert changes(judge, world, {}, judge(world, {})) == ["not testable if only every second value of a is used"]
+    assert changes(judge, world, {}, judge(world, {})) == ["not testable if only every second value of a were used"]
     # This is obvious for a claim on one value of a.
     assert changes(judge, world, {"at": 0.2}, judge(world, {})) == []
 
@@ -131,7 +131,7 @@ def test_other_values_with_data_are_tried(name):
     def judge(_evidence, parameters):
         return Verdict(HOLDS if parameters[name] < 0.5 else FAILS, "")
 
-    assert changes(judge, world, {name: 0.0}, Verdict(HOLDS, "")) == [f"fails if {words} is 1 (here 0)"]
+    assert changes(judge, world, {name: 0.0}, Verdict(HOLDS, "")) == [f"fails if {words} were 1 (it is 0)"]
     assert changes(judge, NOTHING, {name: 0.0}, Verdict(HOLDS, "")) == []
 
 
@@ -157,7 +157,7 @@ def test_bounds_are_tried_at_the_values_with_data(name, own, place, expected):
     judge = judge_with_change(name, place, FAILS, HOLDS)
     now = judge(world, {name: own})
     other = {FAILS: HOLDS, HOLDS: FAILS}[now.verdict]
-    texts = [f"{other} if {words} is {expected} (here {own:g})"] if expected else []
+    texts = [f"{other} if {words} were {expected} (it is {own:g})"] if expected else []
     assert changes(judge, world, {name: own}, now) == texts
     assert changes(judge, NOTHING, {name: own}, now) == []
 
@@ -170,7 +170,7 @@ def test_counts_are_whole_numbers(name, place, expected):
         return Verdict(HOLDS if (parameters[name] < place) == (place > 8) else FAILS, "")
 
     words = KINDS[name].__metadata__[0].words
-    texts = [f"fails if {words} is {expected} (here 8)"] if expected else []
+    texts = [f"fails if {words} were {expected} (it is 8)"] if expected else []
     assert changes(judge, NOTHING, {name: 8}, judge(NOTHING, {name: 8})) == texts
 
 
@@ -183,8 +183,8 @@ def test_other_bounds_of_close_and_opposite_phases_change_a_verdict():
     verdict = judge_claim(claim, known)
     assert verdict.verdict == READING
     found = changing_choices(claim, partial(judge_claim, claim), known, verdict)
-    assert "fails if the phase difference from which phases are opposite is at most 150 (here 180)" in found
-    assert "holds if the phase difference up to which phases are close is at most 15 (here 30)" in found
+    assert "fails if the phase difference from which phases are opposite were at most 150 (it is 180)" in found
+    assert "holds if the phase difference up to which phases are close were at most 15 (it is 30)" in found
 
 
 def test_for_solver_comparisons_single_values_are_left_out_but_the_grid_is_not_halved():
@@ -198,14 +198,14 @@ def test_for_solver_comparisons_single_values_are_left_out_but_the_grid_is_not_h
         known = evidence.summaries["lyapunov"].sizes["a"] == 3
         return Verdict(NOT_TESTABLE if not known else HOLDS if 0.3 in evidence.summaries["solvers"]["a"] else FAILS, "")
 
-    assert changes(judge, world, {}, judge(world, {}), reads=("solvers",)) == ["fails if a = 0.3 is left out"]
+    assert changes(judge, world, {}, judge(world, {}), reads=("solvers",)) == ["fails if a = 0.3 were left out"]
 
 
 @pytest.mark.parametrize(
     ("a", "expected"),
     [
-        ([0.1, 0.2, 0.3], ["fails if only every second value of a is used, starting with the second"]),
-        ([0.2, 0.1, 0.2], ["fails if only every second value of a is used, starting with the first"]),
+        ([0.1, 0.2, 0.3], ["fails if only every second value of a were used, starting with the second"]),
+        ([0.2, 0.1, 0.2], ["fails if only every second value of a were used, starting with the first"]),
         ([0.1], []),  # neither half is judged
     ],
 )
@@ -228,14 +228,14 @@ def test_a_change_under_one_convention_is_given():
 
     parameters = {"tolerance": 1.0}
     (text,) = changes(judge, NOTHING, parameters, judge(NOTHING, parameters))
-    assert text.startswith("depends on convention (other: holds loosely) if the tolerance is at least 1.5")
+    assert text.startswith("depends on convention (other: holds loosely) if the tolerance were at least 1.5")
 
     def fewer(_evidence, parameters):
         under = {"own": FAILS, "other": HOLDS, **({} if parameters["tolerance"] > 1.5 else {"third": HOLDS})}
         return Verdict(CONVENTION, "", conventions=under, own=FAILS)
 
     (text,) = changes(fewer, NOTHING, parameters, fewer(NOTHING, parameters))
-    assert text.startswith("depends on convention (third: not testable) if the tolerance is at least 1.5")
+    assert text.startswith("depends on convention (third: cannot be judged) if the tolerance were at least 1.5")
 
 
 def test_the_neighbours_of_the_value_of_a_claim_are_tried():
@@ -245,7 +245,7 @@ def test_the_neighbours_of_the_value_of_a_claim_are_tried():
     def judge(_evidence, parameters):
         return Verdict(FAILS if parameters["at"] > 0.08 else HOLDS, "")
 
-    assert changes(judge, world, {"at": 0.08}, judge(world, {"at": 0.08})) == ["fails if a is 0.0825 (here 0.08)"]
+    assert changes(judge, world, {"at": 0.08}, judge(world, {"at": 0.08})) == ["fails at a = 0.0825"]
     assert changes(judge, world, {"at": 0.5}, Verdict(FAILS, "")) == []
 
 
@@ -254,10 +254,10 @@ def test_window_and_whole_run_are_tried():
         return Verdict(HOLDS if parameters["part"] == "window" else FAILS, "")
 
     assert changes(judge, NOTHING, {"part": "window"}, Verdict(HOLDS, "")) == [
-        "fails if the whole run is used (here the window)"
+        "fails if the whole run were used instead of the window"
     ]
     assert changes(judge, NOTHING, {"part": "run"}, Verdict(FAILS, "")) == [
-        "holds if the window is used (here the whole run)"
+        "holds if the window were used instead of the whole run"
     ]
 
 

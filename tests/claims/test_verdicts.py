@@ -22,9 +22,10 @@ from burridge_knopoff.claims.verdict import (
     LOOSELY,
     NOT_TESTABLE,
     READING,
+    UNDECIDED,
     Measured,
-    NotTestableError,
     Share,
+    UndecidedError,
     Verdict,
     judge_share,
     judge_shares,
@@ -121,9 +122,9 @@ def test_the_attractor_that_is_reached_is_known_by_branch_and_side() -> None:
         (36, 40, LOOSELY),
         (9, 10, LOOSELY),
         # 95 % intervals that reach nine of ten, and those that do not.
-        (7, 8, NOT_TESTABLE),
-        (22, 26, NOT_TESTABLE),
-        (32, 39, NOT_TESTABLE),
+        (7, 8, UNDECIDED),
+        (22, 26, UNDECIDED),
+        (32, 39, UNDECIDED),
         (31, 39, FAILS),
         (5, 8, FAILS),
         (0, 1, FAILS),
@@ -134,10 +135,10 @@ def test_one_rule_judges_all_shares(hits: int, count: int, expected: str) -> Non
     share = Share(hits, count)
     assert judge_share(share, 0.9) == expected
     texts = f"9 of 9 (one) and {share} (other)"
-    one, open_one = {"one": Share(9, 9), "other": share}, expected == NOT_TESTABLE
+    one, open_one = {"one": Share(9, 9), "other": share}, expected == UNDECIDED
     assert judge_shares(one, 0.9) == ("" if open_one else expected, texts)
     if open_one:
-        with pytest.raises(NotTestableError, match=rf"{hits} of {count} cases \(other\), and the 95 % interval"):
+        with pytest.raises(UndecidedError, match=rf"{hits} of {count} cases \(other\), and the 95 % interval"):
             judge_worst_share(one, 0.9)
     else:
         assert judge_worst_share(one, 0.9) == expected
@@ -161,7 +162,7 @@ def test_one_rule_judges_all_shares(hits: int, count: int, expected: str) -> Non
 def test_a_reading_that_is_open_is_not_left_out(readings: list[str], expected: str) -> None:
     verdicts = {f"reading {number}": verdict for number, verdict in enumerate(readings)}
     if expected == NOT_TESTABLE:
-        with pytest.raises(NotTestableError, match=f"«reading {readings.index(NOT_TESTABLE)}»$"):
+        with pytest.raises(UndecidedError, match=f"«reading {readings.index(NOT_TESTABLE)}»$"):
             combine_readings(verdicts, "why", [])
     else:
         found = Verdict(expected, "why", [], "but; and", verdicts, readings[0])

@@ -32,29 +32,34 @@ ChangedVerdict = Callable[[Any], str]
 class Scaled:
     """A number of which values within FACTOR are tried, down to the nearest that changes the verdict.
 
-    words : what it is
-    of_one : whether its distance from 1 is scaled; whole : whether it is a whole number
+    words : what it is, for «undecided if … were at least 2»
+    percent : whether it is given in per cent; of_one : whether its distance from 1 is scaled
+    whole : whether it is a whole number
     """
 
     words: str
+    percent: bool = False
     of_one: bool = False
     whole: bool = False
 
     def conditions(self, value: float, changed_verdict: ChangedVerdict, _summaries: Summaries) -> Iterator[str]:
-        """Yield each changed verdict with the values that give it: «fails if the tolerance is at least 0.02 …»."""
+        """Yield each changed verdict with the values that give it: «fails if the tolerance were at least 0.02 …»."""
 
         def verdict_at(exponent: float) -> str:
             return changed_verdict(self.scaled(value, exponent))
 
         ends = [_nearest_change(verdict_at, side) for side in (-1.0, 1.0)]
         if len({other for _, other in ends if other}) == 1 and all(abs(end) <= 2.0**-BISECTIONS for end, _ in ends):
-            yield f"{ends[0][1]} if {self.words} is not exactly {value:g}"
+            yield f"{ends[0][1]} if {self.words} were not exactly {value:g}"
             return
         for end, other in ends:
             if other:
                 last = self.scaled(value, end)
-                limit = f"at {'least' if last > value else 'most'} {_rounded(last, up=last > value):g}"
-                yield f"{other} if {self.words} is {limit} (here {value:g})"
+                limit = f"at {'least' if last > value else 'most'} {self._text(_rounded(last, up=last > value))}"
+                yield f"{other} if {self.words} were {limit} (it is {self._text(value)})"
+
+    def _text(self, value: float) -> str:
+        return f"{100.0 * value:g} %" if self.percent else f"{value:g}"
 
     def scaled(self, value: float, exponent: float) -> float:
         """Return the number, or its distance from 1, multiplied by a power of FACTOR."""
@@ -110,14 +115,14 @@ class Along:
         if not self.is_bound:
             for other in summaries[self.summary][self.coordinate].values.tolist():
                 if verdict := changed_verdict(other):
-                    yield f"{verdict} if {self.words} is {other:g} (here {value:g})"
+                    yield f"{verdict} if {self.words} were {other:g} (it is {value:g})"
             return
         smaller = values[(values >= value / FACTOR) & (values < value)][::-1]
         larger = values[(values > value) & (values <= value * FACTOR)]
         for side, candidates in (("most", smaller), ("least", larger)):
             verdicts = ((other, changed_verdict(other)) for other in candidates.tolist())
             if first := next(((other, verdict) for other, verdict in verdicts if verdict), None):
-                yield f"{first[1]} if {self.words} is at {side} {first[0]:g} (here {value:g})"
+                yield f"{first[1]} if {self.words} were at {side} {first[0]:g} (it is {value:g})"
 
 
 @dataclass(frozen=True)
@@ -131,11 +136,11 @@ class Part:
         words = dict(self.others)
         for part, name in self.others:
             if verdict := changed_verdict(part):
-                yield f"{verdict} if {name} is used (here {words[value]})"
+                yield f"{verdict} if {name} were used instead of {words[value]}"
 
 
 Tolerance = Annotated[float, Scaled("the tolerance")]
-LooseTolerance = Annotated[float, Scaled("the loose tolerance")]
+LooseTolerance = Annotated[float, Scaled("the tolerance for “holds loosely”")]
 Near = Annotated[float, Scaled("the distance that counts as near")]
 Relative = Annotated[float, Scaled("the relative tolerance")]
 Much = Annotated[float, Scaled("the ratio that counts as large")]
@@ -143,10 +148,12 @@ Points = Annotated[int, Scaled("the largest number of section points that is no 
 Samples = Annotated[
     int, Scaled("the number of sampled states that show whether an attractor is the only one", whole=True)
 ]
-StateShare = Annotated[float, Scaled("the required share of states", of_one=True)]
-LooseShare = Annotated[float, Scaled("the share from which the claim holds loosely", of_one=True)]
+StateShare = Annotated[float, Scaled("the required share of states", percent=True, of_one=True)]
+LooseShare = Annotated[float, Scaled("the share for “holds loosely”", percent=True, of_one=True)]
 Correlation = Annotated[float, Scaled("the correlation that counts as antiphase", of_one=True)]
-ModeShare = Annotated[float, Scaled("the share of the energy that makes an oscillation one of a mode", of_one=True)]
+ModeShare = Annotated[
+    float, Scaled("the share of the energy that makes an oscillation one of a mode", percent=True, of_one=True)
+]
 Close = Annotated[
     float, Along("the phase difference up to which phases are close", "phases", "phase_difference", is_bound=True)
 ]

@@ -17,6 +17,7 @@ from burridge_knopoff.claims.verdict import (
     LOOSELY,
     NOT_TESTABLE,
     READING,
+    UNDECIDED,
     join_words,
 )
 
@@ -27,8 +28,15 @@ PREDICATES = {
     CONVENTION: ("depends on the convention", "depend on the convention"),
     READING: ("depends on how it is read", "depend on how they are read"),
     FAILS: ("fails", "fail"),
+    UNDECIDED: ("is undecided", "are undecided"),
     NOT_TESTABLE: ("cannot be tested", "cannot be tested"),
 }
+
+#: What `rounding` of the ledger lists.
+ROUNDING = (
+    "The paper gives its initial states to three decimals. Another state that rounds to the same numbers reaches "
+    "another attractor at these values of a."
+)
 
 NUMBERS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 
@@ -42,7 +50,7 @@ def group_untestable(claims: Iterable[dict[str, Any]]) -> dict[str, list[dict[st
 
 
 def group_by_topic(claims: Iterable[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
-    """Return {topic: claims that could be judged}."""
+    """Return {topic: claims of which the study has data}."""
     return _grouped("topic", (claim for claim in claims if claim["verdict"] != NOT_TESTABLE))
 
 
@@ -97,6 +105,8 @@ def as_markdown(content: Mapping[str, Any], figures: str) -> str:
     parts = [f"{count_sentence(content['independent_counts'])}; {dependent_sentence(content)}"]
     if content["depth"]:
         parts.append(f"Depth of the search for attractors: {content['depth']}.")
+    if content["rounding"]:
+        parts.append(f"{ROUNDING} {'. '.join(content['rounding'])}.")
     topics = group_by_topic(content["claims"])
     if topics:
         rows = [

@@ -13,20 +13,28 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.claims.claim import Claim
-from burridge_knopoff.claims.conventions import rounded_state_changes
+from burridge_knopoff.claims.conventions import count_rounding, describe_rounding, rounded_state_changes
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.formats import as_csv, as_json, as_markdown
 from burridge_knopoff.claims.margins import changing_choices
 from burridge_knopoff.claims.other_tolerances import other_tolerances
 from burridge_knopoff.claims.paper import CLAIMS
 from burridge_knopoff.claims.range import Range
-from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Verdict
+from burridge_knopoff.claims.verdict import (
+    NOT_TESTABLE,
+    OPEN,
+    UNDECIDED,
+    VERDICTS,
+    NotTestableError,
+    UndecidedError,
+    Verdict,
+)
 from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.study.paper import PAPER_LAWS
 
 
 def judge(claim: Claim, evidence: Evidence, parameters: Mapping[str, Any] | None = None) -> Verdict:
-    """Return the verdict on a claim; «not testable», with the reason, if the study's data cannot judge it.
+    """Return the verdict on a claim; «undecided» or «not testable», with the reason, if the data cannot judge it.
 
     parameters : replace the claim's own
     """
@@ -35,6 +43,8 @@ def judge(claim: Claim, evidence: Evidence, parameters: Mapping[str, Any] | None
         evidence.check_setting()
         evidence.check_laws(_claim_laws(parameters))
         return claim(evidence, **parameters)
+    except UndecidedError as error:
+        return Verdict(UNDECIDED, f"Undecided: {error}.")
     except NotTestableError as error:
         return Verdict(NOT_TESTABLE, f"Not testable here: {error}.")
 
@@ -50,9 +60,9 @@ def _add_changes(claim: Claim, evidence: Evidence, verdict: Verdict, others: Seq
     a = claim.parameters.get("a")
     if at := claim.parameters.get("at"):
         a = Range(first=at, last=at)
-    if verdict.verdict != NOT_TESTABLE and a and "initial" in claim.parameters and claim.topic != "model":
+    if verdict.verdict not in OPEN and a and "initial" in claim.parameters and claim.topic != "model":
         states = np.atleast_1d(claim.parameters["initial"]).tolist()
-        changes += rounded_state_changes(evidence, states, _claim_laws(claim.parameters), a)
+        changes += count_rounding(rounded_state_changes(evidence, states, _claim_laws(claim.parameters), a))
     choices = changing_choices(claim, partial(judge, claim), evidence, verdict, others)
     return replace(verdict, changes="; ".join(changes), changing_choices=choices)
 
@@ -88,6 +98,7 @@ def ledger(study: str, claims: Sequence[Claim], evidence: Evidence, figures: Col
         "study": study,
         **{key: evidence.config[key] for key in ("v", "contact", "start")},
         "depth": _search_depth(evidence),
+        "rounding": describe_rounding(evidence),
         **provenance(__name__),
         "counts": {name: sum(verdict.verdict == name for verdict in verdicts.values()) for name in VERDICTS},
         "independent_counts": {name: independent.count(name) for name in VERDICTS},

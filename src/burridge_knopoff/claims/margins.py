@@ -17,7 +17,7 @@ import numpy as np
 
 from burridge_knopoff.claims.claim import Claim
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.verdict import CONVENTION, NOT_TESTABLE, READING, Verdict
+from burridge_knopoff.claims.verdict import CONVENTION, NOT_TESTABLE, OPEN, READING, Verdict
 
 # Returns the changed verdict of a claim from evidence and parameters; "" if it is unchanged.
 ChangedVerdict = Callable[[Evidence, Mapping[str, Any]], str]
@@ -35,7 +35,7 @@ def changing_choices(
     judge : judges the claim from evidence and parameters; verdict : its verdict for the claim's own
     others : evidence for other tolerances of the study, each with its description, see `other_tolerances`
     """
-    if verdict.verdict == NOT_TESTABLE:
+    if verdict.verdict in OPEN:
         return []
     parameters = claim.parameters
 
@@ -65,7 +65,7 @@ def difference(verdict: Verdict, other: Verdict) -> str:
         return ""
     conventions = verdict.conventions
     changed = [f"{name}: {judged}" for name, judged in other.conventions.items() if judged != conventions.get(name)]
-    changed += [f"{name}: {NOT_TESTABLE}" for name in conventions if name not in other.conventions]
+    changed += [f"{name}: cannot be judged" for name in conventions if name not in other.conventions]
     return f"{verdict.verdict} ({'; '.join(changed)})" if changed else ""
 
 
@@ -82,11 +82,11 @@ def _grid_choices(changed_verdict: ChangedVerdict, evidence: Evidence, parameter
             halves[first] = other
     verdicts = set(halves.values())
     if len(halves) == 2 and len(verdicts) == 1:
-        yield from (f"{other} if only every second value of a is used" for other in verdicts if other)
+        yield from (f"{other} if only every second value of a were used" for other in verdicts if other)
     else:
         for first, other in halves.items():
             if other:
-                yield f"{other} if only every second value of a is used, starting with the {first}"
+                yield f"{other} if only every second value of a were used, starting with the {first}"
 
 
 def _solver_choices(
@@ -100,7 +100,7 @@ def _solver_choices(
         without = {**evidence.summaries, "solvers": solvers.sel(a=solvers["a"] != a)}
         other = changed_verdict(replace(evidence, summaries=without), parameters)
         if other:
-            yield f"{other} if a = {a:g} is left out"
+            yield f"{other} if a = {a:g} were left out"
 
 
 def _neighbour_choices(
@@ -114,5 +114,5 @@ def _neighbour_choices(
     place = int(np.searchsorted(grid, parameters["at"]))
     for value in grid[[k for k in (place - 1, place + 1) if 0 <= k < len(grid)]].tolist():
         other = changed_verdict(evidence, {**parameters, "at": value})
-        if other and other != NOT_TESTABLE:
-            yield f"{other} if a is {value:g} (here {parameters['at']:g})"
+        if other and other not in OPEN:
+            yield f"{other} at a = {value:g}"

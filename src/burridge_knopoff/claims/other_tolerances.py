@@ -26,7 +26,7 @@ THRESHOLD = "synchronization_threshold"
 
 
 def other_tolerances(evidence: Evidence) -> Iterator[tuple[str, Evidence]]:
-    """Yield («tolerance is another value (here its own)», the evidence with it), at half and at twice the tolerance."""
+    """Yield («tolerance were 2 (it is 1)», the evidence with it), at half and at twice each tolerance."""
     summaries = evidence.summaries
     attributes = summaries["agreement"].attrs if "agreement" in summaries else {}
     agreement = {name: attributes[name] for name in AGREEMENT if name in attributes}
@@ -49,7 +49,7 @@ def other_tolerances(evidence: Evidence) -> Iterator[tuple[str, Evidence]]:
 
 
 def _format_choice(name: str, value: float, factor: float) -> str:
-    return f"{name} is {factor * value:g} (here {value:g})"
+    return f"{name} were {factor * value:g} (it is {value:g})"
 
 
 def _with_motion(evidence: Evidence, settings: MotionSettings, agreement: Mapping[str, Any]) -> Evidence:

@@ -14,8 +14,8 @@ from burridge_knopoff.claims.verdict import (
     LOOSELY,
     Measured,
     NotTestableError,
+    UndecidedError,
     count_share,
-    format_shares,
     judge_worst_share,
 )
 from burridge_knopoff.model.sampling import fraction_interval
@@ -78,7 +78,7 @@ class PhaseOutcomes:
         self.cells = np.ix_(np.arange(len(self.laws)), self.inside, self.without_backward_slip)
         cells = zip(self.laws, self.holds[self.cells], strict=True)
         shares = {law: count_share(cell.all(axis=1)) for law, cell in cells}
-        self.shares, worst = format_shares(shares), judge_worst_share(shares, criteria.loose_share)
+        self.shares, worst = shares, judge_worst_share(shares, criteria.loose_share)
         self.verdict = LOOSELY if worst == HOLDS and not self.holds[:, self.inside].all() else worst
 
     @property
@@ -125,12 +125,12 @@ def _count_states(claimed: xarray.DataArray, chosen: np.ndarray, share: float) -
     claimed : over (law, a, amplitude, phase_difference, state); chosen : mask of phase differences
     share : fraction that the interval has to reach if all states have it
 
-    Raises NotTestableError if there are too few states.
+    Raises UndecidedError if there are too few states.
     """
     states = claimed.isel(phase_difference=chosen)
     count = states.sizes["phase_difference"] * states.sizes["state"]
     if not fraction_interval(count, count)[1] >= share:
-        raise NotTestableError(f"{count} states of the same phases are too few for a share of {share:g}")
+        raise UndecidedError(f"{count} states of the same phases are too few for a share of {share:g}")
     hits = states.sum(("phase_difference", "state")).transpose("law", "a", "amplitude").values
     interval = np.transpose([fraction_interval(int(number), count) for number in hits.ravel()])
     return FractionIntervals(*interval.reshape(3, *hits.shape))

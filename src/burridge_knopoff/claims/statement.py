@@ -22,6 +22,7 @@ from burridge_knopoff.claims.verdict import (
     NotTestableError,
     Share,
     Verdict,
+    at_values,
     describe_where,
     format_shares,
     judge_shares,
@@ -111,6 +112,10 @@ class Statement:
     def __str__(self) -> str:
         return format_shares(self.shares)
 
+    def at(self, where: str) -> str:
+        """Return at which values of a it is true, see `at_values`."""
+        return at_values(self.shares, where)
+
     @property
     def shares(self) -> Mapping[str, Share]:
         """The share of each case."""
@@ -188,7 +193,11 @@ def for_all(
     def under(attractors: xarray.Dataset) -> tuple[str, str]:
         assert reached is not None
         cases = reached(Reached(evidence, evidence.choose(attractors, a), initial)).cases()
-        return judge_shares({case.name: case.share for case in cases if case.is_decided(loose)}, loose)
+        known = [case for case in cases if case.is_decided(loose)]
+        shares = {case.name: case.share for case in known}
+        verdict, numbers = judge_shares(shares, loose)
+        is_about_all = known and all(case.share.count == len(case.a) for case in known)
+        return verdict, at_values(shares, "") if is_about_all else numbers
 
     cases = list(truth(Runs(evidence, initial, a)).cases(unknown))
     return decided(Statement(evidence, cases, loose, under if reached else None))

@@ -5,32 +5,43 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.study.formatting import format_values
+from burridge_knopoff.study.paper import PAPER_LAWS
 
 HOLDS = "holds"
 LOOSELY = "holds loosely"
 CONVENTION = "depends on convention"
 READING = "depends on reading"
 FAILS = "fails"
+UNDECIDED = "undecided"
 NOT_TESTABLE = "not testable"
 
 #: All verdicts, in the order of counts.
-VERDICTS = (HOLDS, LOOSELY, CONVENTION, READING, FAILS, NOT_TESTABLE)
+VERDICTS = (HOLDS, LOOSELY, CONVENTION, READING, FAILS, UNDECIDED, NOT_TESTABLE)
+
+#: Those that leave a claim open: the values are too few to decide, or the study has none.
+OPEN = (UNDECIDED, NOT_TESTABLE)
 
 # A fraction of fewer values than this is written as a count.
 FEW = 10
 
 # The verdicts that a rule can give, from best to worst.
-_RANK = (HOLDS, LOOSELY, NOT_TESTABLE, FAILS)
+_RANK = (HOLDS, LOOSELY, UNDECIDED, NOT_TESTABLE, FAILS)
 
 
 class NotTestableError(Exception):
     """A claim that the study's data cannot judge; the message gives the reason."""
+
+
+class UndecidedError(NotTestableError):
+    """A claim for which the study has data, but too few to decide between two verdicts."""
 
 
 @dataclass(frozen=True)
@@ -96,9 +107,9 @@ def count_share(right: ArrayLike) -> Share:
 
 
 def worst_verdict(verdicts: Iterable[str]) -> str:
-    """Return the worst of the verdicts holds, holds loosely, not testable and fails.
+    """Return the worst of the verdicts holds, holds loosely, undecided, not testable and fails.
 
-    One that fails decides; one that cannot be tested leaves the others open.
+    One that fails decides; one that is open leaves the others open.
     """
     return max(verdicts, key=_RANK.index)
 
@@ -108,13 +119,13 @@ def judge_share(share: Share, loose: float) -> str:
 
     It holds if all values are as claimed, and loosely if the fraction is at least `loose`. It fails if the 95 % Wilson
     interval of the fraction lies below `loose`. If the fraction is smaller but its interval includes `loose`, the
-    values are too few to decide: not testable.
+    values are too few, and the statement is undecided.
     """
     if share.hits == share.count:
         return HOLDS
     if share.value >= loose:
         return LOOSELY
-    return FAILS if share.interval[1] < loose else NOT_TESTABLE
+    return FAILS if share.interval[1] < loose else UNDECIDED
 
 
 def share_is_decided(least: int, most: int, count: int, loose: float) -> bool:
@@ -128,6 +139,32 @@ def format_shares(shares: Mapping[str, Share]) -> str:
     return join_words([f"{share} ({name})" for name, share in shares.items()])
 
 
+def at_values(shares: Mapping[str, Share] | Share, where: str) -> str:
+    """Return at which values of a a statement is true: «at every value of a with a > 0.1, under both laws».
+
+    shares : by the name of their case, or one alone; where : which values are judged
+    """
+    shares = {"": shares} if isinstance(shares, Share) else shares
+    fractions = {share.value for share in shares.values()}
+    where = f" {where}" if where else ""
+    if fractions not in ({0.0}, {1.0}) or min(share.count for share in shares.values()) < FEW:
+        numbers = format_shares(shares) if "" not in shares else str(shares[""])
+        return f"at {numbers} of the values of a{where}"
+    return f"at {'every' if 1.0 in fractions else 'no'} value of a{where}{_cases_in_words([*shares])}"
+
+
+def _cases_in_words(names: Sequence[str]) -> str:
+    """Return the names of cases for a sentence that is true of all of them."""
+    if names == [""]:
+        return ""
+    of_states = {", from both states": PAPER_STATES, "": [""]}
+    of_laws = {", under both laws": PAPER_LAWS, "": [""]}
+    for (states, initial), (laws, law) in product(of_states.items(), of_laws.items()):
+        if {*names} == {", ".join(filter(None, pair)) for pair in product(law, initial)}:
+            return states + laws
+    return f" ({'; '.join(names)})"
+
+
 def join_words(words: Sequence[str], conjunction: str = "and") -> str:
     """Return words as a list in a sentence: «one, two and three»."""
     *first, last = words
@@ -137,14 +174,14 @@ def join_words(words: Sequence[str], conjunction: str = "and") -> str:
 def judge_worst_share(shares: Mapping[str, Share], loose: float) -> str:
     """Return the verdict for the worst of some named fractions, by `judge_share`.
 
-    Raises NotTestableError, with the fraction and its interval, if the values are too few to decide.
+    Raises UndecidedError, with the fraction and its interval, if the values are too few to decide.
     """
     verdicts = {name: judge_share(share, loose) for name, share in shares.items()}
     worst = worst_verdict(verdicts.values())
-    if worst == NOT_TESTABLE:
-        name = next(name for name, verdict in verdicts.items() if verdict == NOT_TESTABLE)
+    if worst == UNDECIDED:
+        name = next(name for name, verdict in verdicts.items() if verdict == UNDECIDED)
         share = shares[name]
-        raise NotTestableError(
+        raise UndecidedError(
             f"it is true in {share.hits} of {share.count} cases ({name}), and the 95 % interval of this share includes "
             f"{loose:g} (its upper end is {share.interval[1]:.2f}), so there are too few cases to decide"
         )
@@ -156,7 +193,7 @@ def judge_shares(shares: Mapping[str, Share], loose: float) -> tuple[str, str]:
     if not shares:
         return "", ""
     verdict = worst_verdict(judge_share(share, loose) for share in shares.values())
-    return ("" if verdict == NOT_TESTABLE else verdict), format_shares(shares)
+    return ("" if verdict == UNDECIDED else verdict), format_shares(shares)
 
 
 def judge_value(value: float, claimed: float, tolerance: float, loose: float) -> str:
@@ -170,7 +207,7 @@ def judge_value(value: float, claimed: float, tolerance: float, loose: float) ->
 def judge_interval(low: float, high: float, claimed: float, tolerance: float, loose: float) -> str:
     """Judge a number known to lie in (low, high], by a verdict that is right for the whole interval.
 
-    Raises NotTestableError if only part of the interval agrees with the claim: the grid of a is too coarse.
+    Raises UndecidedError if only part of the interval agrees with the claim: the grid of a is too coarse.
     """
     # Decimals of a grid and of a claim may differ in the last bit.
     tolerance, loose = tolerance * (1.0 + 1e-9), loose * (1.0 + 1e-9)
@@ -182,7 +219,7 @@ def judge_interval(low: float, high: float, claimed: float, tolerance: float, lo
         return FAILS
     if tolerance < nearest and farthest <= loose:
         return LOOSELY
-    raise NotTestableError(f"the grid of a is too coarse between {low:g} and {high:g}")
+    raise UndecidedError(f"the grid of a is too coarse between {low:g} and {high:g}")
 
 
 def extremes(quantity: str, values: np.ndarray, name: str = "") -> list[Measured]:

@@ -11,7 +11,13 @@ from burridge_knopoff.claims.conventions import combine_readings
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.range import POSITIVE, TWO_BLOCKS, Range
 from burridge_knopoff.claims.statement import Statement, Truth, decided
-from burridge_knopoff.claims.verdict import FAILS, Measured, Verdict, judge_share
+from burridge_knopoff.claims.verdict import (
+    FAILS,
+    Measured,
+    Verdict,
+    at_values,
+    judge_share,
+)
 from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.motion.kind import CHAOS, MotionKind
 
@@ -100,7 +106,7 @@ def periodic_for_one_block(evidence: Evidence, *, a: Range = POSITIVE, loose_sha
             where = chaos.any([dimension for dimension in chaos.dims if dimension != "a"])
             measured.append(Measured(f"smallest a with chaos of {name}", float(chaos["a"][where][0])))
     reason = (
-        f"One block sticks and slips periodically under both laws at {periodic.share} of the values of a with {a}; "
+        f"One block sticks and slips periodically under both laws {at_values(periodic.share, f'with {a}')}; "
         f"{chaotic or 'no'} motions of two or three blocks are chaotic there."
     )
     verdict = periodic.verdict if chaotic else FAILS

@@ -18,14 +18,14 @@ from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
     LOOSELY,
-    NOT_TESTABLE,
+    OPEN,
     Measured,
     NotTestableError,
     Verdict,
+    at_values,
     count_share,
     describe_where,
     extremes,
-    format_shares,
     join_words,
     judge_worst_share,
     worst_verdict,
@@ -69,7 +69,7 @@ def history_decides(
         if len(fraction):
             measured += extremes("basin fraction of synchrony", fraction, law)
         single += describe_where("at most one kind of motion", slots["a"].values, kinds <= 1, law)
-    reason = f"Attractors of more than one kind are reached at {format_shares(shares)} of the values of a with {a}."
+    reason = f"Attractors of more than one kind are reached {at_values(shares, f'with {a}')}."
     return Verdict(judge_worst_share(shares, loose_share), reason, measured, "; ".join(single))
 
 
@@ -115,8 +115,7 @@ def first_block_decides(
     unknown = f"too few runs under the {{law}} law completed at {a}"
     share = for_all(evidence, initial, a, loose_share, truth, unknown, truth)
     return share.conclude(
-        f"One of {initial[0]} and {initial[1]} synchronizes and the other does not at {share} of the values of a with "
-        f"{a}.",
+        f"One of {initial[0]} and {initial[1]} synchronizes and the other does not {share.at(f'with {a}')}.",
         share.measured("share of a at which the outcome differs"),
         "the outcome is the same",
     )
@@ -145,7 +144,7 @@ def same_for_both_laws(
     unknown = f"too few runs from {{initial}} completed at {a}"
     share = for_all(evidence, initial, a, loose_share, truth, unknown, truth)
     return share.conclude(
-        f"Both laws have the same outcome, synchrony or no synchrony, at {share} of the values of a with {a}.",
+        f"Both laws have the same outcome, synchrony or no synchrony, {share.at(f'with {a}')}.",
         share.measured("share of a with the same outcome"),
         "the outcomes differ",
     )
@@ -163,8 +162,8 @@ def plus_under_one_convention(evidence: Evidence, *, claims: tuple[str, ...] = O
     """
     verdicts = {name: evidence.verdicts[name] for name in claims}
     for verdict in verdicts.values():
-        if verdict.verdict == NOT_TESTABLE:
-            raise NotTestableError(verdict.reason.removeprefix("Not testable here: ").removesuffix("."))
+        if verdict.verdict in OPEN:
+            raise NotTestableError(verdict.reason.partition(": ")[2].removesuffix("."))
     conventions = sorted({convention for verdict in verdicts.values() for convention in verdict.conventions})
     if not conventions:
         raise NotTestableError("the claims are judged under one convention only")
@@ -246,12 +245,12 @@ def phases_decide(
         try:
             outcomes = PhaseOutcomes(phases, other, criteria)
         except NotTestableError as error:
-            changes.append(f"with {where} the claim is {NOT_TESTABLE}: {error}")
+            changes.append(f"with {where} the claim cannot be judged: {error}")
             continue
         readings[where] = outcomes.verdict
         changes.append(
-            f"with {where} (A = {outcomes.amplitudes}) the claim {outcomes.verdict}, since it is true at "
-            f"{outcomes.shares} of the values of a: {outcomes.format_fractions()}"
+            f"with {where} (A = {outcomes.amplitudes}) the claim {outcomes.verdict}, since it is true "
+            f"{at_values(outcomes.shares, f'with {a}')}: {outcomes.format_fractions()}"
         )
         measured += outcomes.measured(where, outcomes.without_backward_slip)
     synchronized, antiphase = (
@@ -262,8 +261,8 @@ def phases_decide(
     reason = (
         f"The end blocks oscillate about uniform sliding with amplitudes at which no block slips backward (A = "
         f"{judged.amplitudes}), {_format_inner_block(inner_share)}. Phases within {close:g}° lead to synchrony "
-        f"({synchronized}) and opposite phases to antiphase ({antiphase}) at {judged.shares} of the values of a with "
-        f"{a}."
+        f"({synchronized}) and opposite phases to antiphase ({antiphase}) "
+        f"{at_values(judged.shares, f'with {a}')}."
     )
     return combine_readings(readings, reason, measured, changes)
 

@@ -22,6 +22,7 @@ from burridge_knopoff.claims.verdict import (
     Measured,
     NotTestableError,
     Verdict,
+    at_values,
     describe_where,
     join_words,
     judge_interval,
@@ -67,7 +68,7 @@ def _all_of_kind(
         if known.any():
             of_all = float(np.isin(merge_chaos(attractors["kind"].values), allowed)[known].mean())
             measured.append(Measured(f"share of all attractors with {what} motion", of_all))
-    reason = f"The motion is {what} at {share} of the values of a with {a}."
+    reason = f"The motion is {what} {share.at(f'with {a}')}."
     # Periodic and quasiperiodic together are regular motion, however the two are divided.
     if ("periodic" in kinds) != ("quasiperiodic" in kinds):
         longest = evidence.config["motion"]["longest_period"]
@@ -162,8 +163,8 @@ def periodic_is_synchronized(
         raise NotTestableError(f"no run from {initial} is periodic with {synchrony}")
     wider = Statement(evidence, list(truth(Runs(evidence, [initial], a)).cases()), loose_share)
     reason = (
-        f"The periodic motion from {initial} is synchronized at {share} of the values of a with {synchrony}, where the "
-        f"paper finds synchrony, and at {wider} of those with {a}."
+        f"The periodic motion from {initial} is synchronized {share.at(f'with {synchrony}')}, where "
+        f"the paper finds synchrony, and {wider.at(f'with {a}')}."
     )
     measured = share.measured(f"share of a with {synchrony} at which it is synchronized")
     measured += wider.measured(f"share of a with {a} at which it is synchronized")
@@ -269,8 +270,7 @@ def plus_largest_exponent(
         Measured(f"largest in modulus, at a = {exponent['a'].values[largest]:g}", value, spread),
     ]
     return share.conclude(
-        f"The largest exponent from {initial} ({law}) is 0 within its error at {share.share} of the values of a with "
-        f"{a}.",
+        f"The largest exponent from {initial} ({law}) is 0 within its error {at_values(share.share, f'with {a}')}.",
         measured,
         "not 0",
         "exponent not known",

@@ -13,15 +13,15 @@ from burridge_knopoff.claims.conventions import combine_readings
 from burridge_knopoff.claims.evidence import MIN_VALUES, Evidence
 from burridge_knopoff.claims.range import BELOW, Range
 from burridge_knopoff.claims.verdict import (
-    NOT_TESTABLE,
+    UNDECIDED,
     Measured,
     NotTestableError,
     Share,
     Verdict,
+    at_values,
     count_share,
     describe_where,
     extremes,
-    format_shares,
     join_words,
     judge_share,
     share_is_decided,
@@ -117,12 +117,12 @@ def branch_locked(
         reading: worst_verdict(judge_share(share, loose_share) for share in of_branch.values())
         for reading, of_branch in shares.items()
     }
-    kept, locked_shares = (format_shares(shares[reading]) for reading in (ONE_FREQUENCY, NO_MODE))
+    kept, locked = (at_values(shares[reading], f"with {a}") for reading in (ONE_FREQUENCY, NO_MODE))
     reason = (
         f"With {100 * detuning:g} % more mass on one of them, the end blocks keep one frequency, and a perturbation of "
-        f"their relative phase decays (the third Lyapunov exponent is negative), at {kept} of the values of a with {a} "
+        f"their relative phase decays (the third Lyapunov exponent is negative), {kept} "
         f"({verdicts[ONE_FREQUENCY]}). They are locked, with less than {100 * mode_share:g} % of the kinetic energy of "
-        f"this oscillation in any normal mode, at {locked_shares} ({verdicts[NO_MODE]}). Each motion was followed for "
+        f"this oscillation in any normal mode, {locked} ({verdicts[NO_MODE]}). Each motion was followed for "
         f"{rotation.attrs['detuned_transient'] + 2.0 * rotation.attrs['detuned_window']:g} time units."
     )
     return combine_readings(verdicts, reason, measured, where)
@@ -201,7 +201,7 @@ def locking_precedes_chaos(evidence: Evidence, *, loose_share: LooseShare = 0.9)
             certain = [at for at in possible if not precursors[at]]
             is_decided = share_is_decided(len(certain), len(possible), len(places), loose_share)
             share = Share(len(certain), len(places))
-            readings[reading].append(judge_share(share, loose_share) if is_decided else NOT_TESTABLE)
+            readings[reading].append(judge_share(share, loose_share) if is_decided else UNDECIDED)
             texts[reading].append(f"{share.hits} of {share.count} ({name})")
             measured.append(Measured(f"share of the onsets of chaos that {reading} precedes, {name}", share.value))
             if reading == LOCKED and certain:

@@ -108,8 +108,8 @@ def not_differentiable_at_events(evidence: Evidence, *, a: Range = POSITIVE, loo
     ]
     reason = (
         f"Among the events that are stored with states, U'' jumps at every stop, by at least "
-        f"{smallest['stop_jump']:.2g}, and U''' at every start, by at least {smallest['start_jump']:.2g}, at {share} "
-        f"of the values of a with {a}. U'' is continuous at a start."
+        f"{smallest['stop_jump']:.2g}, and U''' at every start, by at least {smallest['start_jump']:.2g}, "
+        f"{share.at(f'with {a}')}. U'' is continuous at a start."
     )
     return share.conclude(reason, measured, "no jump at some event")
 
@@ -149,11 +149,15 @@ def sticks_unavoidable(evidence: Evidence, *, a: Range = POSITIVE, loose_share: 
             Measured(f"share of attractors in which every block stops, {law}", every[law].value),
         ]
     modes = equilibrium.sizes["mode"]
-    reason = (
-        f"All {modes} eigenvalues of uniform sliding have positive real parts, and some block stops repeatedly on each "
-        f"attractor: true of {format_shares(shares)} with {a}. Every block stops on {format_shares(every)} of the "
-        "attractors."
+    everywhere = all(share.hits == share.count for share in shares.values())
+    claimed = (
+        f"All {modes} eigenvalues of uniform sliding have positive real parts at every value of a, and some block "
+        f"stops repeatedly on every attractor, with {a} and under both laws"
+        if everywhere
+        else f"All {modes} eigenvalues of uniform sliding have positive real parts, and some block stops repeatedly on "
+        f"each attractor: true of {format_shares(shares)} with {a}"
     )
+    reason = f"{claimed}. Every block stops on {format_shares(every)} of the attractors."
     changes = "not every block stops on every attractor" if any(share.value < 1.0 for share in every.values()) else ""
     return Verdict(judge_worst_share(shares, loose_share), reason, measured, changes)
 
@@ -222,7 +226,9 @@ def antiphase_persists(
         "share of the runs in antiphase that are on their attractor",
         lambda case: [Measured(f"values of a with a run in antiphase, {case.name}", float(case.share.count))],
     )
-    reason = f"Of the runs from {initial} with {a} whose end blocks move in antiphase, {share} stay in antiphase."
+    all_stay = all(case.share.hits == case.share.count for case in share.cases)
+    staying = "all" if all_stay else str(share)
+    reason = f"Of the runs from {initial} with {a} whose end blocks move in antiphase, {staying} stay in antiphase."
     return share.conclude(reason, measured, "transient", "undetermined")
 
 

@@ -15,6 +15,7 @@ from burridge_knopoff.claims.verdict import (
     Measured,
     NotTestableError,
     Verdict,
+    at_values,
     describe_where,
 )
 from burridge_knopoff.motion.kind import MotionKind
@@ -46,8 +47,8 @@ def minus_one_section_point(
     unknown = f"the number of section points of the run from {initial} is not known {{where}}"
     share = for_all(evidence, [initial], a, loose_share, truth, unknown)
     return share.conclude(
-        f"The section of runs from {initial} ({law}) is one point at {share.share} of the {share.share.count} values "
-        f"of a with {a} at which the motion has settled.",
+        f"The section of runs from {initial} ({law}) is one point "
+        f"{at_values(share.share, f'with {a}')} at which the motion has settled.",
         [Measured("share of a with one section point", share.share.value)],
         "more than one point",
         "not settled",
@@ -88,8 +89,8 @@ def plus_cloud(
         Measured("share of a with all of them below it", _fraction(cloud["max"] < line["min"])),
     ]
     return share.conclude(
-        f"From {second} ({law}) the section is a cloud at lower velocities than from {first} at {share.share} of the "
-        f"values of a with {a}.",
+        f"From {second} ({law}) the section is a cloud at lower velocities than from {first} "
+        f"{at_values(share.share, f'with {a}')}.",
         measured,
         "no lower cloud",
         further=describe_where("no point at all", cloud["a"].values, cloud["count"].values == 0),
@@ -174,8 +175,8 @@ def plus_line_disappears(
 
     share = for_all(evidence, initial, a, loose_share, truth, NOT_COMPLETED, reached)
     return share.conclude(
-        f"From {second} ({law}) no section point lies within {100.0 * near:g} % of the line from {first} at "
-        f"{share.share} of the values of a with {a}.",
+        f"From {second} ({law}) no section point lies within {100.0 * near:g} % of the line from {first} "
+        f"{at_values(share.share, f'with {a}')}.",
         [Measured("share of a without a point on the line", share.share.value)],
         "on the line",
     )

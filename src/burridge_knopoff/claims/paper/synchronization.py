@@ -18,9 +18,10 @@ from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
     LOOSELY,
-    NOT_TESTABLE,
+    UNDECIDED,
     Measured,
     NotTestableError,
+    UndecidedError,
     Verdict,
     join_words,
     judge_interval,
@@ -54,7 +55,7 @@ def _synchronizes(evidence: Evidence, initial: str, a: Range, loose_share: float
 
     verb = "synchronize" if synchronized else "do not synchronize"
     return share.conclude(
-        f"From {initial} the end blocks {verb} at {share} of the values of a with {a}.",
+        f"From {initial} the end blocks {verb} {share.at(f'with {a}')}.",
         share.measured(f"share of a with {claimed}", extreme),
         otherwise,
     )
@@ -171,11 +172,11 @@ def lower_edge(
 
 
 def _judge_edge(low: float, high: float, claimed: float, tolerance: float, loose: float) -> str:
-    """Return the verdict on an edge in (low, high], or at low if they are equal; «not testable» if it is open."""
+    """Return the verdict on an edge in (low, high], or at low if they are equal; «undecided» if it is open."""
     try:
         return judge_interval(low, high, claimed, tolerance, loose)
-    except NotTestableError:
-        return NOT_TESTABLE
+    except UndecidedError:
+        return UNDECIDED
 
 
 def _reached_synchrony(evidence: Evidence, initial: str) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
