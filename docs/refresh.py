@@ -18,9 +18,11 @@ import xarray
 from PIL import Image
 
 from burridge_knopoff.attractors.lookup import branch_names
+from burridge_knopoff.claims.comparison import compare
 from burridge_knopoff.claims.formats import as_json, as_markdown, count_sentence, dependent_sentence
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.provenance.files import write_text
+from burridge_knopoff.report.numbers import with_powers_of_ten
 from burridge_knopoff.study.formatting import span
 
 if TYPE_CHECKING:
@@ -45,12 +47,16 @@ def replace_block(text: str, block: str) -> str:
 
 
 def headline(ledger: Mapping[str, Any]) -> str:
-    """Return the sentence of the README that counts the independent statements of a ledger."""
+    """Return the numbers of the paper and of the study, and how many independent statements have each verdict."""
     sentence = (
         f"**{count_sentence(ledger['independent_counts'])}**; {dependent_sentence(ledger)} "
         "[docs/claims.md](docs/claims.md) lists all of them with their evidence."
     )
-    return textwrap.fill(sentence, 120, break_on_hyphens=False) + "\n"
+    rows = [
+        f"| {words} | {paper} | {with_powers_of_ten(ours)} |" for words, paper, ours, _ in compare(ledger["claims"])
+    ]
+    table = "\n".join(["| | paper | this software |", "| --- | --- | --- |", *rows])
+    return f"{textwrap.fill(sentence, 120, break_on_hyphens=False)}\n\n{table}\n"
 
 
 def branches(attractors: xarray.Dataset) -> list[dict[str, Any]]:

@@ -35,7 +35,7 @@ class Job:
     results : folder of the study
     cache : folder in which long jobs of the study cache their results, for other values of a or after a kill
 
-    Raises BadFile if an input is damaged or not the expected one, ValueError if the results belong to another config.
+    Raises BadFile if an input is corrupt or not the expected one, ValueError if the results belong to another config.
     """
 
     def __init__(self, snakemake: Any) -> None:

@@ -54,10 +54,10 @@ def other_run(path: Path, a: float = 0.2, **settings: Any) -> None:
 DAMAGES: dict[str, tuple[Callable[[Path], object], str]] = {
     "missing": (Path.unlink, "is missing"),
     "emptied": (lambda path: path.write_bytes(b""), "is empty"),
-    "truncated": (lambda path: rewrite(path, cut), "is damaged"),
-    "last byte lost": (lambda path: rewrite(path, lambda content: content[:-1]), "is damaged"),
+    "truncated": (lambda path: rewrite(path, cut), "is corrupt"),
+    "last byte lost": (lambda path: rewrite(path, lambda content: content[:-1]), "is corrupt"),
     "noise": (lambda path: path.write_bytes(noise(5000)), "not a netCDF file"),
-    "noise inside": (lambda path: rewrite(path, noise_inside), "is damaged"),
+    "noise inside": (lambda path: rewrite(path, noise_inside), "is corrupt"),
     "no checksum": (lambda path: edit(path, lambda file: file.delncattr("checksum")), "has no checksum"),
     "an edited number": (lambda path: edit(path, lambda file: file["distance"].__setitem__(0, 0.5)), "was changed"),
     "an edited attribute": (lambda path: edit(path, lambda file: file.setncattr("solver", "rk4")), "was changed"),

@@ -68,7 +68,7 @@ def test_what_is_not_of_the_study_is_pruned_and_nothing_else(results, capsys):
     *lines, totals, note = capsys.readouterr().out.splitlines()
     paths = [name for name in gone if not name.startswith(("logs", "benchmarks"))]
     assert sorted(lines) == sorted(f"leftover {results / name}: not part of this study" for name in paths)
-    assert totals.endswith(": 0 missing, 0 corrupt, 0 stale, 0 failed")
+    assert totals.endswith(": 0 missing, 0 corrupt, 0 outdated, 0 failed")
     assert note == f"left over, with logs and benchmarks: {len(gone)} files; delete: bk prune {results}"
     assert not {"attractors", "proof"} & {*open_study(results)["summary"].children}
     kept = NOT_LEFT_OVER.split()

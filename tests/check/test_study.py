@@ -36,7 +36,7 @@ def test_a_sound_study(results, capsys):
     others = [path for folder in folders for path in (results / folder).rglob("*") if path.is_file()]
     assert capsys.readouterr().out == (
         f"{results}: 16 points, 6 runs of other solvers, {len(others) + 1} other files: "
-        "0 missing, 0 corrupt, 0 stale, 0 failed\n"
+        "0 missing, 0 corrupt, 0 outdated, 0 failed\n"
     )
 
 
@@ -50,13 +50,13 @@ def test_a_bad_point_is_refused_and_listed_with_the_command_that_remakes_it(resu
     reason, kind = caught.value.reason, caught.value.kind
     assert words in reason
     assert reason.isprintable()
-    assert kind == {"is missing": "missing"}.get(words, "stale" if "another" in words else "corrupt")
+    assert kind == {"is missing": "missing"}.get(words, "outdated" if "another" in words else "corrupt")
     command = f"snakemake -c2 --configfile study.yaml -R {results / POINT}"
     assert str(caught.value) == f"{results / POINT}: {reason}; remake it: {command}"
     assert main(["check", str(results)]) == 1
     line, totals, remake = capsys.readouterr().out.splitlines()
     assert line == f"{kind:8} {results / POINT}: {'not made yet' if kind == 'missing' else reason}"
-    assert re.findall(r"[1-9]\d* (?:missing|corrupt|stale|failed)", totals) == [f"1 {kind}"]
+    assert re.findall(r"[1-9]\d* (?:missing|corrupt|outdated|failed)", totals) == [f"1 {kind}"]
     assert remake == f"remake: {command}"
 
 
@@ -82,15 +82,15 @@ TILES = [f"basins/linearized/a0.0800/tile{number}.nc" for number in range(2)]
 RUNS = [f"solvers/{solver}/linearized/minus/a0.2000.nc" for solver in ("map", "rk4")]
 #: A file, its damage, and the finding.
 BAD = [
-    ("summary/bifurcation_diagram.nc", begun, "corrupt", "is damaged"),
+    ("summary/bifurcation_diagram.nc", begun, "corrupt", "is corrupt"),
     ("summary/agreement.txt", emptied, "corrupt", "is empty"),
     ("summary/claims.json", begun, "corrupt", "was changed after it was written"),
     ("figures/lyapunov.png", begun, "corrupt", "was changed after it was written"),
     ("figures/lyapunov.pdf", begun, "corrupt", "was changed after it was written"),
     ("report.html", emptied, "corrupt", "is empty"),
-    ("summary/mean_distance.nc", foreign, "stale", "was not made in a study"),
-    (TILES[1], replacement("1.nc", "0.nc"), "stale", f"is another file: got {TILES[0]}, expected {TILES[1]}"),
-    (RUNS[0], replacement("map", "rk4"), "stale", "is another run: solver: got rk4, expected map"),
+    ("summary/mean_distance.nc", foreign, "outdated", "was not made in a study"),
+    (TILES[1], replacement("1.nc", "0.nc"), "outdated", f"is another file: got {TILES[0]}, expected {TILES[1]}"),
+    (RUNS[0], replacement("map", "rk4"), "outdated", "is another run: solver: got rk4, expected map"),
     (RUNS[1], Path.unlink, "missing", "not made yet"),
 ]
 
@@ -102,7 +102,7 @@ def test_every_bad_file_is_listed(results):
     for name, _, kind, words in BAD:
         assert findings[name][0] == kind
         assert findings.pop(name)[1].startswith(words)
-    assert all(finding[0] == "stale" and finding[1].startswith("was made from ") for finding in findings.values())
+    assert all(finding[0] == "outdated" and finding[1].startswith("was made from ") for finding in findings.values())
 
 
 @pytest.mark.parametrize(
@@ -112,18 +112,18 @@ def test_every_bad_file_is_listed(results):
 def test_files_of_other_sources_are_reported_and_opened(results, name, attribute, sources):
     forge(results / name, **{attribute: f"{sources}{'0' * 16}"})
     kind, reason = findings_of(results)[name]
-    assert kind == "stale"
+    assert kind == "outdated"
     assert re.fullmatch(rf"was made by other sources \(fingerprint {'0' * 16}, now [0-9a-f]{{16}}\)", reason)
     assert open_result(results / name).data.sizes
     assert open_study(results)[name.removesuffix(".nc")].sizes
 
 
 def test_a_changed_key_is_named_in_all_files_that_depend_on_it(results, capsys):
-    """Itself or by their inputs; no other file is stale, and none of these is read."""
+    """Itself or by their inputs; no other file is outdated, and none of these is read."""
     change_record(results, lambda record: record["config"]["attractors"].update(samples=16))
     words = "was made with attractors.samples: got 6, expected 16"
     findings = findings_of(results)
-    assert {*findings.values()} == {("stale", words)}
+    assert {*findings.values()} == {("outdated", words)}
     assert findings.keys() >= {
         *("attractors/linearized.nc", "summary/attractors.nc", "basins/linearized/a0.0800/tile0.nc"),
         *("figures/basin_fractions.png", "summary/claims.json", "report.html"),
@@ -144,13 +144,13 @@ def test_a_file_made_from_another_version_of_an_input_is_stale(results):
     """Whatever the times of the files; it is read, since the input has the same params."""
     name, of_it = "attractors/linearized.nc", "summary/attractors.nc"
     forge(results / name, title="another")
-    assert {*findings_of(results).values()} == {("stale", f"was made from another {name}")}
+    assert {*findings_of(results).values()} == {("outdated", f"was made from another {name}")}
     assert of_it in findings_of(results)
     assert open_result(results / of_it).data.sizes
     emptied(results / name)
     findings = findings_of(results)
     assert findings.pop(name) == ("corrupt", "is empty")
-    assert findings[of_it] == ("stale", f"was made from {results / name}, which is corrupt")
+    assert findings[of_it] == ("outdated", f"was made from {results / name}, which is corrupt")
 
 
 #: {log of a job: its files}
@@ -191,7 +191,7 @@ def test_a_run_that_failed_is_counted_and_is_no_error(results, capsys):
     assert main(["check", str(results)]) == 3
     line, totals = capsys.readouterr().out.splitlines()
     assert line == f"failed   {results / POINT}: ended with status accumulating_events"
-    assert totals.endswith(": 0 missing, 0 corrupt, 0 stale, 1 failed")
+    assert totals.endswith(": 0 missing, 0 corrupt, 0 outdated, 1 failed")
     emptied(results / "report.html")
     assert main(["check", str(results)]) == 1
 
@@ -204,7 +204,7 @@ def test_a_copy_under_another_name_is_no_file_of_the_study(results, capsys, name
     assert main(["check", str(results)]) == 0
     line, totals = capsys.readouterr().out.splitlines()
     assert line == f"unknown  {copy}: no file of a study has that name"
-    assert totals.endswith(": 0 missing, 0 corrupt, 0 stale, 0 failed")
+    assert totals.endswith(": 0 missing, 0 corrupt, 0 outdated, 0 failed")
 
 
 def test_solvers_that_nobody_asked_for_are_not_missing(results, capsys):
@@ -279,9 +279,11 @@ def test_a_changed_config_is_named_and_nothing_is_pruned_by_it(results, capsys, 
     is_stale = change is not None and bool(words)
     assert main(["check", str(results)]) == is_stale
     said = capsys.readouterr().out
-    assert f"{int(is_stale)} stale" in said
-    named = re.findall(r"^(stale|note) +study\.yaml: (.*); the config of the last run is checked$", said, re.MULTILINE)
-    assert [kind for kind, _ in named] == ["stale"] * is_stale + ["note"] * (change is None)
+    assert f"{int(is_stale)} outdated" in said
+    named = re.findall(
+        r"^(outdated|note) +study\.yaml: (.*); the config of the last run is checked$", said, re.MULTILINE
+    )
+    assert [kind for kind, _ in named] == ["outdated"] * is_stale + ["note"] * (change is None)
     assert all(reason.startswith(words) for _, reason in named)
     assert main(["check", "--paths", str(results)]) == is_stale
     assert capsys.readouterr().out == ""

@@ -197,16 +197,13 @@ def test_a_section_has_the_evidence_of_its_claim(content: dict) -> None:
     claim = next(claim for claim in content["claims"] if claim["figure"]).copy()
     claim |= {
         "statement": "A|B.",
-        "verdict": "depends on reading",
+        "verdict": "ambiguous",
         "reason": "Why.",
         "changes": "here; not other_claim",
     }
     claim |= {"changing_choices": ["holds if c"], "depends_on": ["other_claim"]}
     lines = as_markdown({**content, "claims": [claim]}, "figures").split("\n\n")
-    assert (
-        f"| A\\|B. | depends on reading (dependent) | [{claim['name']}](#{claim['name']}) |"
-        in "\n".join(lines).splitlines()
-    )
+    assert f"| A\\|B. | ambiguous (dependent) | [{claim['name']}](#{claim['name']}) |" in "\n".join(lines).splitlines()
     assert lines[lines.index(f"#### {claim['name']}") + 1 :] == [
         f"*A|B.* ({claim['place']})",
         "**Depends on reading** (under the first reading: holds). Why.",

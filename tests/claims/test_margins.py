@@ -175,7 +175,7 @@ def test_counts_are_whole_numbers(name, place, expected):
 
 
 def test_other_bounds_of_close_and_opposite_phases_change_a_verdict():
-    """The claim depends on reading with the bounds of the claim and fails with another."""
+    """The claim is ambiguous with the bounds of the claim and fails with another."""
     world, claim = paper_world(), CLAIMS["phases_decide"]
     not_opposed = alter("phases", "velocity_correlation", 1.0, phase_difference=150.0)
     both(not_opposed, alter("phases", "branch", 2, phase_difference=30.0, inner_share=1.0))(world)

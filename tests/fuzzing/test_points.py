@@ -1,4 +1,4 @@
-"""A damaged point file is refused with one line, or its values are those that were written."""
+"""A corrupt point file is refused with one line, or its values are those that were written."""
 
 import pytest
 from hypothesis import given
@@ -30,7 +30,7 @@ def read_run(path, command, names):
 
 
 class Points:
-    """Two points of one study: the first is damaged and read, the second gives pieces for it."""
+    """Two points of one study: the first is corrupt and read, the second gives pieces for it."""
 
     def __init__(self, folder):
         self.path = folder / "fuzzed.nc"
@@ -65,7 +65,7 @@ def points(tmp_path_factory):
 
 @examples(500)
 @given(st.data())
-def test_a_damaged_point_is_refused_or_has_its_values(points, data):
+def test_a_corrupt_point_is_refused_or_has_its_values(points, data):
     """A few bits, bytes or ranges of bytes are changed, moved, removed or inserted."""
     whole, other = points.content
     content = bytearray(whole)
@@ -92,7 +92,7 @@ def test_a_damaged_point_is_refused_or_has_its_values(points, data):
     points.is_whole(bytes(content))
 
 
-def test_an_undamaged_point_has_its_values(points):
+def test_an_intact_point_has_its_values(points):
     whole, other = points.content
     assert points.is_whole(whole)
     assert not points.is_whole(other)

@@ -63,7 +63,7 @@ def test_a_study_is_shown_on_one_screen(results):
 
 
 def test_files_are_opened_on_request(results, tmp_path):
-    """A damaged file does not matter to the others."""
+    """A corrupt file does not matter to the others."""
     shutil.copytree(results, tmp_path, dirs_exist_ok=True)
     (tmp_path / POINT).write_bytes(b"")
     (tmp_path / SUMMARY).write_bytes(b"")
@@ -108,7 +108,7 @@ def test_parts_of_arrays_are_read_on_request(results):
     ("name", "damage", "reason"),
     [
         (POINT, lambda path: path.write_bytes(b""), "is empty"),
-        (POINT, lambda path: path.write_bytes(b"no netCDF"), "is damaged, or not a netCDF file"),
+        (POINT, lambda path: path.write_bytes(b"no netCDF"), "is corrupt, or not a netCDF file"),
         (
             POINT,
             lambda path: shutil.copy(path.with_name("a0.0800.nc"), path),
@@ -127,7 +127,7 @@ def test_parts_of_arrays_are_read_on_request(results):
         ),
     ],
 )
-def test_a_file_that_is_damaged_or_not_of_the_study_is_named(results, tmp_path, name, damage, reason):
+def test_a_file_that_is_corrupt_or_not_of_the_study_is_named(results, tmp_path, name, damage, reason):
     """The message, with the command that recreates the file, is that of `bk show`."""
     shutil.copytree(results, tmp_path, dirs_exist_ok=True)
     damage(tmp_path / name)

@@ -57,7 +57,7 @@ def test_a_whole_study():
 
 
 @pytest.mark.parametrize("content", [b"", b"{", b'{"counts": 3}', b'{"counts": {}}', b"[]", b"\xff\xfe"])
-def test_a_damaged_summary_gives_a_line_and_no_error(content):
+def test_a_corrupt_summary_gives_a_line_and_no_error(content):
     for name in RULES.values():
         (FOLDER / name).write_bytes(content)
     said = lines()[2:]

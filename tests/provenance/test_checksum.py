@@ -118,7 +118,7 @@ def test_no_edit_passes(path, edit):
 @pytest.mark.parametrize("size", [0, 1, 100, -1])
 def test_a_part_of_a_file_is_refused(path, size):
     path.write_bytes(path.read_bytes()[:size])
-    with pytest.raises(BadFile, match="is empty" if size == 0 else "is damaged"), open_whole(path):
+    with pytest.raises(BadFile, match="is empty" if size == 0 else "is corrupt"), open_whole(path):
         pass
 
 

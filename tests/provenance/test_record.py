@@ -44,7 +44,7 @@ def test_another_config_of_the_same_name_is_refused(tmp_path, monkeypatch):
     check_owner(tmp_path, "other.yaml", {})
 
 
-def test_a_damaged_record_refuses_no_config(tmp_path):
+def test_a_corrupt_record_refuses_no_config(tmp_path):
     (tmp_path / "study.json").write_text("{")
     check_owner(tmp_path, "other.yaml", GIVEN)
 

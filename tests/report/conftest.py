@@ -57,7 +57,8 @@ def poor(tmp_path_factory) -> Poor:
         ' "statement": "It </script><img src=x onerror=alert(1)>.",'
         ' "place": "Sec. <b onclick=x>1</b>", "verdict": "fails", "own": "fails", "reason": "No run.", "changes": "",'
         ' "measured": [{"quantity": "<i onmouseover=x>rate</i>", "value": 1.0, "error": null, "proved": false}],'
-        ' "conventions": {"<u onfocus=x>any</u>": "not testable"}, "figure": ""}]}'
+        ' "conventions": {"<u onfocus=x>any</u>": "not testable"}, "figure": "", "depends_on": [],'
+        ' "changing_choices": []}]}'
     )
     claims.write_text(as_json(content))
     files = (folder.glob(f"{place}/*.{suffix}") for place, suffix in (("summary", "nc"), ("figures", "png")))

@@ -1,5 +1,6 @@
 """The report in a browser, read as its readers do: with a pointer, with the keyboard, on a phone, in print."""
 
+import json
 import unicodedata
 from dataclasses import replace
 
@@ -185,6 +186,28 @@ def check_blocks(page):
     assert page.locator("#blocks path.spring").count() == 5
 
 
+def check_filter(page, content):
+    """Statements are shown by verdict, and without those that follow from others; a link opens its details.
+
+    content : the file of verdicts
+    """
+    rows = page.locator(".verdicts tr[data-verdict][id]:visible")
+    everything = rows.count()
+    verdict = next(name for name, count in content["counts"].items() if count and name != "not testable")
+    page.locator(f'[data-shows="{verdict}"]').click()
+    assert rows.count() == content["counts"][verdict]
+    page.locator("#independent-only").check()
+    assert rows.count() == content["independent_counts"][verdict]
+    # A statement that is hidden is shown if a link leads to it.
+    name = next(claim["name"] for claim in content["claims"] if claim["verdict"] not in (verdict, "not testable"))
+    page.evaluate("(name) => { location.hash = `#claim-${name}`; }", name)
+    details = page.locator(f'[data-claim="{name}"][open]')
+    details.wait_for()
+    assert rows.count() == everything
+    assert details.bounding_box()["width"] > 0.9 * page.locator(".verdicts").bounding_box()["width"]
+    page.evaluate("window.scrollTo(0, 0)")
+
+
 def tab_through(page):
     """Press Tab from the top to the end; return the names of all that was reached. Each must show that it has focus."""
     page.evaluate(
@@ -218,14 +241,22 @@ def test_the_report_of_a_study(browser, reported):
     assert page.locator(".chart[data-drawn]").count() < page.locator(".chart").count()
     assert reader.draw_everything() == 10
     assert page.locator(".picture.fallback").first.is_hidden()
-    assert page.locator(".badge").first.inner_text() == "✓ holds"
+    page.locator(".recompute summary").click()
+    assert page.locator(".meanings .badge").first.inner_text() == "✓ holds"
     titles = page.locator("main > section > h2").all_inner_texts()
-    assert titles[:4] == [
+    assert titles[:6] == [
         "The paper's claims, tested",
+        "The model",
         "Mean distance ⟨J⟩",
+        "Attractors and basins",
         "Bifurcation diagrams",
-        "Verdicts on all statements",
+        "Floquet multipliers and the loss of synchrony",
     ]
+    # The panel of one run is beside the charts on which it is picked.
+    chart, panel = (page.locator(place).bounding_box() for place in ('.chart[data-law="0"]', "#run"))
+    assert chart["x"] + chart["width"] <= panel["x"]
+    assert abs(chart["y"] - panel["y"]) < 300
+    check_filter(page, json.loads((results / "summary" / "claims.json").read_text()))
 
     # A run by pointer, by arrow keys, by the buttons and by the lists.
     check_run(page, results, "linearized", "minus", 0.08)
@@ -282,7 +313,10 @@ def test_the_report_of_a_study(browser, reported):
     page.emulate_media(media="print")
     assert page.evaluate(paper) == light[0]
     assert page.locator(".chart").first.is_hidden()
-    for picture in page.locator(".picture img").all():
+    assert page.locator("#further").is_hidden()
+    for picture in page.locator(
+        "section:not(#further) > .panel .picture img, section:not(#further) > .picture img"
+    ).all():
         assert picture.is_visible()
         assert picture.evaluate("image => image.decode().then(() => image.naturalWidth)") >= 900
     reader.close()

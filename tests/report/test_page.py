@@ -9,9 +9,10 @@ import pytest
 import xarray
 
 from burridge_knopoff.claims import paper
+from burridge_knopoff.claims.formats import TITLES
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.report.page import Sources, render
-from burridge_knopoff.report.verdicts import MAIN, SIGNS, TITLES
+from burridge_knopoff.report.verdicts import MAIN, MEANINGS, SIGNS
 from tests.report.conftest import CLAIMS
 from tests.small_study import run_study
 
@@ -70,7 +71,9 @@ def test_what_is_missing_is_said_in_a_line(page):
 def test_the_paper_comes_first_and_every_statement_has_its_place(poor):
     page = Page(render(poor.study, replace(poor.sources, claims=CLAIMS), []))
     sections = [attributes["id"] for tag, attributes in page.elements if tag == "section"]
-    assert sections[:4] == ["summary", "distance", "sections", "verdicts"]
+    assert sections[:7] == ["summary", "model", "distance", "run", "attractors", "sections", "orbits"]
+    assert sections[7] == "verdicts"
+    assert [*MEANINGS] == [*SIGNS]
     assert "History‑dependent synchronization" in page.whole_text
     assert PAPER in [attributes["href"] for tag, attributes in page.elements if tag == "a"]
     rows = [attributes["id"] for tag, attributes in page.elements if attributes.get("id", "").startswith("claim-")]
@@ -85,7 +88,7 @@ def test_the_main_claims_are_quoted_with_their_verdicts(poor, tmp_path):
         record["name"] = name
     (tmp_path / "claims.json").write_text(json.dumps(content))
     text = Page(render(poor.study, replace(poor.sources, claims=tmp_path / "claims.json"))).whole_text
-    opening = text[text.index("independent statements of the paper") : text.index("is the time average")]
+    opening = text[text.index("independent statements") : text.index("is the time average")]
     places = [
         opening.index(f"{SIGNS[record['verdict']]} {record['verdict']} {record['statement'][:6]}") for record in chosen
     ]

@@ -31,7 +31,7 @@ def test_verdicts_are_counted_and_put_by_topic():
     assert [(topic, len(claims)) for topic, claims in verdicts.topics.items()] == [
         ("Synchronization of the end blocks", 2),
         ("Friction laws", 1),
-        ("Motion of the blocks", 2),
+        ("Motion of the blocks", 3),
     ]
     assert list(verdicts.untestable) == ["The study has no experiment."]
     assert verdicts.setting["contact"] == "one_sided"
@@ -45,7 +45,7 @@ def test_what_cannot_be_judged_is_put_by_its_reason(read):
 
     verdicts = read(judge_nothing)
     counts = {reason: len(claims) for reason, claims in verdicts.untestable.items()}
-    assert counts == {"Short runs.": 1, "Few values.": 5}
+    assert counts == {"Short runs.": 1, "Few values.": 6}
     assert verdicts.topics == {}
     assert sum(read_verdicts(None).counts.values()) == 0
 

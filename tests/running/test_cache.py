@@ -81,7 +81,7 @@ def test_a_call_of_changed_code_is_another_call(tmp_path, monkeypatch, place, na
 
 
 @pytest.mark.parametrize("damage", [b"", b"no line", b"0" * 64 + b"\nother"])
-def test_a_damaged_file_is_ignored(tmp_path, damage):
+def test_a_corrupt_file_is_ignored(tmp_path, damage):
     path = cached_call(tmp_path, first, 7)[1]
     path.write_bytes(damage)
     assert cached_call(tmp_path, first, 7) == (7, path, False)

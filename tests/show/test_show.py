@@ -173,7 +173,7 @@ def test_summaries_of_two_studies_are_not_drawn_together(small_studies, tmp_path
         assert (f"but {tmp_path / 'attractors.nc'} is of another study" in said) == (code == 2)
 
 
-def test_damaged_and_foreign_files_are_refused_in_a_line(point, study, tmp_path, capsys):
+def test_corrupt_and_foreign_files_are_refused_in_a_line(point, study, tmp_path, capsys):
     whole, inside = point.read_bytes(), study / "summary/cut.nc"
     (tmp_path / "cut.nc").write_bytes(whole[:-100])
     (tmp_path / "changed.nc").write_bytes(whole)
@@ -185,7 +185,7 @@ def test_damaged_and_foreign_files_are_refused_in_a_line(point, study, tmp_path,
     inside.write_bytes(whole[:-100])
     root = study.parents[1]
     for path, words in (
-        (tmp_path / "cut.nc", "is damaged, or not a netCDF file"),
+        (tmp_path / "cut.nc", "is corrupt, or not a netCDF file"),
         (tmp_path / "changed.nc", "was changed after it was written"),
         (tmp_path / "text.nc", "not a netCDF file"),
         (tmp_path / "foreign.nc", "has no checksum"),

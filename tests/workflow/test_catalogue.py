@@ -133,7 +133,7 @@ def test_a_change_recomputes_what_depends_on_it(study, capsys):
     results = study.folder / "results/quakes"
     assert main(["check", str(results)]) == 1
     output = capsys.readouterr().out
-    assert f"{results}: 3 points, 7 other files: 3 missing, 0 corrupt, 0 stale, 0 failed\n" in output
+    assert f"{results}: 3 points, 7 other files: 3 missing, 0 corrupt, 0 outdated, 0 failed\n" in output
     plans = {
         "low: -4.0": {"catalogue": 1, "figure_catalogue": 1, "figure_slip_map": 1},
         "window: 900": {"catalogue_of_run": 2, "catalogue": 1, "figure_catalogue": 1, "figure_slip_map": 1},

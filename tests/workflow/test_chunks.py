@@ -84,7 +84,7 @@ def test_no_point_is_computed_twice(copy):
 
 
 @pytest.mark.parametrize("damage", [Path.unlink, lambda path: path.write_bytes(path.read_bytes()[:-5])])
-def test_only_a_missing_or_damaged_point_is_recomputed(copy, damage):
+def test_only_a_missing_or_corrupt_point_is_recomputed(copy, damage):
     before, content = times(copy), (copy.folder / POINT).read_bytes()
     damage(copy.folder / POINT)
     assert f"{MARK}: a point of this chunk is missing or was changed: it is made again" in copy.ok()

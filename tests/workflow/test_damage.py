@@ -1,4 +1,4 @@
-"""Damaged and foreign files: the job that reads one stops with its name, the reason and the command to recreate it."""
+"""Corrupt and foreign files: the job that reads one stops with its name, the reason and the command to recreate it."""
 
 import json
 import os
@@ -69,7 +69,7 @@ def test_a_bad_file_with_its_old_modification_time(copy, finished, limited):
     #: {file: (rule that reads it, change, words)}: of the study, of another tile, law, v and shape.
     bad = {
         POINT: ("agreement", DAMAGES["an edited number"][0], "was changed after it was written"),
-        "summary/orbits.nc": ("figure_orbits", lambda path: rewrite(path, cut), "is damaged"),
+        "summary/orbits.nc": ("figure_orbits", lambda path: rewrite(path, cut), "is corrupt"),
         "basins/linearized/a0.0800/tile1.nc": (
             *("basins", lambda path: shutil.copy(path.with_name("tile0.nc"), path)),
             "is another file: got basins/linearized/a0.0800/tile0.nc, expected basins/linearized/a0.0800/tile1.nc",
@@ -105,7 +105,7 @@ def test_the_claims_and_the_report_stop_at_a_bad_file(copy, name, rule):
     assert [command.partition(" -R ")[2] for command in remedies(run.stderr)] == [f"results/tiny/{name}"]
 
 
-def test_damaged_and_lost_texts_and_pictures_are_made_again(copy, finished):
+def test_corrupt_and_lost_texts_and_pictures_are_made_again(copy, finished):
     """No job needs to read them; the next run checks them itself, and keeps what it replaces."""
     results = copy.folder / "results/tiny"
     for name in ("summary/claims.json", "figures/orbits.png"):
@@ -122,8 +122,8 @@ def test_damaged_and_lost_texts_and_pictures_are_made_again(copy, finished):
     assert kinds.items() <= findings.items()
     output = copy.ok()
     assert "results/tiny/figures/orbits.png: was changed after it was written: it is made again" in output
-    assert (results / "figures/orbits.png.damaged").read_bytes() == cut((results / "figures/orbits.png").read_bytes())
-    for path in results.rglob("*.damaged"):
+    assert (results / "figures/orbits.png.corrupt").read_bytes() == cut((results / "figures/orbits.png").read_bytes())
+    for path in results.rglob("*.corrupt"):
         path.unlink()
     assert not check_study(results).findings
     check_end(copy, finished)
@@ -145,7 +145,7 @@ def test_touching_files_does_not_hide_other_params(copy):
     copy.ok("figure_mean_distance", "--touch")
     copy.ok("--touch")
     # The job that failed has removed its figure, from which the report was made.
-    reasons = [finding.reason for finding in check_study(results).findings if finding.kind == "stale"]
+    reasons = [finding.reason for finding in check_study(results).findings if finding.kind == "outdated"]
     assert not [reason for reason in reasons if "was made with" in reason]
 
 

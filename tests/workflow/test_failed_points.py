@@ -49,7 +49,7 @@ def test_the_check_distinguishes_them_from_errors(limited):
     assert run.returncode == 3
     assert [line.split()[0] for line in lines[:-1]] == ["failed"] * 4
     assert lines[0].endswith("points/linearized/minus/a2.5000.nc: ended with status diverged")
-    assert lines[-1].endswith("0 missing, 0 corrupt, 0 stale, 4 failed")
+    assert lines[-1].endswith("0 missing, 0 corrupt, 0 outdated, 4 failed")
 
 
 def test_the_report_shows_them(limited):

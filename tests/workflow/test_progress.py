@@ -151,7 +151,7 @@ def test_failed_jobs_are_named_with_their_logs(copy):
 def test_an_error_in_the_closing_lines_does_not_fail_a_run(copy):
     summary = copy.folder / "results" / "tiny" / "summary" / "mean_distance.nc"
     times = summary.stat()
-    summary.write_text("damaged")
+    summary.write_text("corrupt")
     # With its old modification time nothing that depends on it is recomputed.
     os.utime(summary, ns=(times.st_atime_ns, times.st_mtime_ns))
     output = copy.ok("summary", "figures", "-R", "figure_equilibrium", "--rerun-triggers", "params")

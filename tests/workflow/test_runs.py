@@ -162,13 +162,13 @@ def test_only_new_values_of_a_wider_grid_are_searched(copy):
 
 
 def test_touch_makes_no_file_and_says_so(tmp_path, limited):
-    """It sets the times of files that exist. A damaged picture stays as it is, since nothing recreates it."""
+    """It sets the times of files that exist. A corrupt picture stays as it is, since nothing recreates it."""
     study = copied(limited.folder, tmp_path / "study")
     results = study.folder / "results/limits"
     for name in ("summary/mean_distance.nc", "figures/orbits.png", "figures/orbits.pdf", "report.html"):
         (results / name).unlink()
     picture = results / "figures/equilibrium.png"
-    picture.write_bytes(b"damaged")
+    picture.write_bytes(b"corrupt")
     files = {path for path in results.rglob("*") if path.is_file() and path.suffix != ".log"}
     output = study.ok("--touch")
     assert {path for path in results.rglob("*") if path.is_file() and path.suffix != ".log"} == files

@@ -41,7 +41,7 @@ rule simulate:
 
 
 rule chunk:
-    """Simulate the points of a chunk that are missing, damaged or out of date."""
+    """Simulate the points of a chunk that are missing, corrupt or out of date."""
     output:
         touch(f"{RESULTS}/chunks/{{chunk}}.done"),
     log:

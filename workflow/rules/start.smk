@@ -1,4 +1,4 @@
-# What happens when the workflow has been read, and when a run starts: the study is recorded in its folder, damaged texts and
+# What happens when the workflow has been read, and when a run starts: the study is recorded in its folder, corrupt texts and
 # pictures are set aside, and remarks are printed.
 
 
@@ -72,14 +72,14 @@ def prepare_results():
     PLAN.announce()
 
 
-def set_damaged_aside(makes_files):
-    """Set damaged texts and pictures aside, so that Snakemake finds them missing; say so if this run makes no files."""
-    for path, reason in damaged_files(STUDY, Path(RESULTS), map(inside, FILES)):
+def set_corrupt_aside(makes_files):
+    """Set corrupt texts and pictures aside, so that Snakemake finds them missing; say so if this run makes no files."""
+    for path, reason in corrupt_files(STUDY, Path(RESULTS), map(inside, FILES)):
         words = "would be made again"
         # Someone may have edited it on purpose. Otherwise it is empty, or its job was killed.
         if makes_files and reason == CHANGED:
-            path.replace(f"{path}.damaged")
-            words = f"is made again; kept as {path.name}.damaged"
+            path.replace(f"{path}.corrupt")
+            words = f"is made again; kept as {path.name}.corrupt"
         elif makes_files:
             path.unlink()
             words = "is made again"
@@ -103,7 +103,7 @@ if workflow.is_main_process:
         sys.exit(f"--report: {RESULTS} is missing: run the study first, by the same command without --report")
     IS_DRY_RUN, OTHER_RUN = workflow.output_settings.dryrun, is_locked(Path(RESULTS))
     if not OTHER_RUN:
-        set_damaged_aside(runs_jobs(sys.argv[1:]) and not IS_DRY_RUN)
+        set_corrupt_aside(runs_jobs(sys.argv[1:]) and not IS_DRY_RUN)
     # A dry run calls no hook.
     if IS_DRY_RUN:
         print_remarks()

@@ -37,7 +37,7 @@ from burridge_knopoff.provenance.sums import write_sums
 from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.study.chunks import chunks
 from burridge_knopoff.study.command_line import config_arguments, of_command_line
-from burridge_knopoff.study.damage import damaged_files
+from burridge_knopoff.study.integrity import corrupt_files
 from burridge_knopoff.study.keys import (
     condition_refusal,
     length_refusal,

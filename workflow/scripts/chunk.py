@@ -1,4 +1,4 @@
-"""Simulate the points of a chunk that are missing, damaged or out of date."""
+"""Simulate the points of a chunk that are missing, corrupt or out of date."""
 
 from burridge_knopoff.job import Job
 

@@ -17,7 +17,7 @@ from burridge_knopoff.study.study import Study
 def changes(study: Study, results: Path, sources: Mapping[str, str]) -> dict[str, list[str]]:
     """Return {change: rules that it concerns}, such as {`attractors.samples: 100 → 120`: [attractors_of_law, …]}.
 
-    The changes are those since the netCDF files of the study were made; damaged files count as new.
+    The changes are those since the netCDF files of the study were made; corrupt files count as new.
 
     sources : {file of the study: its current sources, see `provenance.origin`}
     """

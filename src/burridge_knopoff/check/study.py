@@ -1,4 +1,4 @@
-"""`bk check`: files of a study that are missing, corrupt, stale, or of failed runs."""
+"""`bk check`: files of a study that are missing, corrupt, outdated, or of failed runs."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from burridge_knopoff.provenance.record import NAME, remake_command
 from burridge_knopoff.provenance.sources import current_sources
 from burridge_knopoff.running.status import STATUS_WORDS
 from burridge_knopoff.study.chunks import chunks
-from burridge_knopoff.study.damage import check_file
 from burridge_knopoff.study.formatting import format_count
+from burridge_knopoff.study.integrity import check_file
 from burridge_knopoff.study.job_log import logged_error
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import Study, run_files
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
 
-KINDS = ("missing", "corrupt", "stale", "failed")
+KINDS = ("missing", "corrupt", "outdated", "failed")
 #: Suffixes of logs and benchmarks, which are not results.
 LOGS = (".log", ".tsv")
 #: Maximum number of files in a printed command; for more, the command calls `bk check --paths`.
@@ -66,8 +66,8 @@ class Check:
     @property
     def exit_code(self) -> int:
         """0 if nothing is wrong, 3 if runs have failed only, else 1."""
-        stale = any(finding.kind == "stale" for finding in self.others)
-        return 1 if stale or self.paths else 3 if self.findings else 0
+        outdated = any(finding.kind == "outdated" for finding in self.others)
+        return 1 if outdated or self.paths else 3 if self.findings else 0
 
     @property
     def paths(self) -> list[str]:
@@ -82,7 +82,7 @@ class Check:
         if self.is_locked:
             return [
                 *lines,
-                "a run is in progress here and makes missing and stale files; if it was killed, release its lock by "
+                "a run is in progress here and makes missing and outdated files; if it was killed, release its lock by "
                 "`snakemake --unlock` and run it again",
             ]
         return [*lines, f"remake: {self._remake()}"] if self.paths else lines
@@ -195,9 +195,9 @@ def _findings(study: Study, results: Path, record: Mapping[str, Any], logs: Mapp
                 break
             if other in bad and other not in checksums:
                 reason = f"was made from {results / other}, which is {bad[other].kind}"
-                bad[name] = Finding("stale", results / name, reason)
+                bad[name] = Finding("outdated", results / name, reason)
             elif other in checksums and checksums[other] != checksum:
-                bad[name] = Finding("stale", results / name, f"was made from another {other}")
+                bad[name] = Finding("outdated", results / name, f"was made from another {other}")
     yield from bad.values()
 
 
@@ -213,7 +213,7 @@ def _own_finding(path: Path, origin: Origin | None) -> Finding | None:
     if sources and (now := current_sources(sources)) not in ("", sources):
         made_by = sources.rpartition(" ")[2]
         return Finding(
-            "stale", path, f"was made by other sources (fingerprint {made_by}, now {now.rpartition(' ')[2]})"
+            "outdated", path, f"was made by other sources (fingerprint {made_by}, now {now.rpartition(' ')[2]})"
         )
     return Finding("failed", path, f"ended with status {status}") if status not in (None, "completed") else None
 
@@ -227,12 +227,12 @@ def config_change(results: Path, record: dict[str, Any]) -> Finding | None:
     try:
         config = read_yaml(path)
         if isinstance(config, dict) and config.get("study") != record["given"].get("study"):
-            return Finding("stale", file, f"is not the config of {NAME}; the config of the last run is checked")
+            return Finding("outdated", file, f"is not the config of {NAME}; the config of the last run is checked")
         if config != record["given"]:
-            return Finding("stale", file, "has changed since the last run; the config of the last run is checked")
+            return Finding("outdated", file, "has changed since the last run; the config of the last run is checked")
     except ConfigError as error:
         reason = str(error).partition(": ")[2]
-        return Finding("stale", file, f"{reason}; the config of the last run is checked")
+        return Finding("outdated", file, f"{reason}; the config of the last run is checked")
     return None
 
 
@@ -244,7 +244,7 @@ def check_record(results: Path) -> None:
     """
     record, study = recorded_study(results)
     change = config_change(results, record)
-    if change and change.kind == "stale":
+    if change and change.kind == "outdated":
         raise ValueError(f"{results}: {change.path} {change.reason.partition(';')[0]}: run snakemake first")
     if study.name != results.resolve().name:
         raise ValueError(f"{results}: {NAME} is the record of study {study.name}: run snakemake first")
@@ -255,7 +255,7 @@ def check_record(results: Path) -> None:
         except BadFile as error:
             if error.kind == "missing" and name.startswith("points/"):
                 reason = f"incomplete ({error.path}: not made yet), so that its record cannot be verified"
-            elif error.kind == "stale":
+            elif error.kind == "outdated":
                 reason = f"its files are not those of {NAME} ({error.path}: {error.reason})"
             else:
                 continue

@@ -76,7 +76,7 @@ def combine_readings(
 ) -> Verdict:
     """Return the verdict of a claim with more than one reading, from the verdict under each; the first one is its own.
 
-    The claim depends on reading if it holds, at least loosely, under one reading and fails under another. Otherwise the
+    The claim is ambiguous if it holds, at least loosely, under one reading and fails under another. Otherwise the
     worst verdict decides. Raises UndecidedError if a reading is open and could contradict the others.
     """
     own = next(iter(verdicts.values()))

@@ -26,10 +26,24 @@ PREDICATES = {
     HOLDS: ("holds", "hold"),
     LOOSELY: ("holds loosely", "hold loosely"),
     CONVENTION: ("depends on the convention", "depend on the convention"),
-    READING: ("depends on how it is read", "depend on how they are read"),
+    READING: ("is ambiguous", "are ambiguous"),
     FAILS: ("fails", "fail"),
     UNDECIDED: ("is undecided", "are undecided"),
     NOT_TESTABLE: ("cannot be tested", "cannot be tested"),
+}
+
+#: Titles of the topics of the claims.
+TITLES = {
+    "synchronization": "Synchronization of the end blocks",
+    "history": "Dependence on the initial state",
+    "kinds": "Kinds of motion",
+    "locking": "Frequency locking",
+    "section": "Poincaré section",
+    "motion": "Motion of the blocks",
+    "model": "Equations of motion and uniform sliding",
+    "laws": "Linearization of the friction law",
+    "blocks": "Chains of one and two blocks",
+    "solvers": "Methods of solution",
 }
 
 #: What `rounding` of the ledger lists.
@@ -59,6 +73,11 @@ def _grouped(key: str, claims: Iterable[dict[str, Any]]) -> dict[str, list[dict[
     for claim in claims:
         groups.setdefault(claim[key], []).append(claim)
     return groups
+
+
+def topic_title(topic: str) -> str:
+    """Return the heading of a topic."""
+    return TITLES.get(topic, topic.capitalize())
 
 
 def as_json(content: Mapping[str, Any]) -> str:
@@ -117,7 +136,7 @@ def as_markdown(content: Mapping[str, Any], figures: str) -> str:
         ]
         parts.append("\n".join(["| statement | verdict | evidence |", "| --- | --- | --- |", *rows]))
     for topic, claims in topics.items():
-        parts.append(f"### {topic.capitalize()}")
+        parts.append(f"### {topic_title(topic)}")
         for claim in claims:
             parts += _section(claim, figures)
     if reasons := group_untestable(content["claims"]):

@@ -18,7 +18,7 @@ from burridge_knopoff.study.paper import PAPER_LAWS
 HOLDS = "holds"
 LOOSELY = "holds loosely"
 CONVENTION = "depends on convention"
-READING = "depends on reading"
+READING = "ambiguous"
 FAILS = "fails"
 UNDECIDED = "undecided"
 NOT_TESTABLE = "not testable"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 DESCRIPTION = """Delete and list files of laws, initial states, values of a and stages that are no longer in the config
 of the last run, with their logs and benchmarks. Files with other names are kept. Nothing is deleted if a point is
-missing or a file is stale, since the record of the last run may then be that of another study."""
+missing or a file is outdated, since the record of the last run may then be that of another study."""
 
 EXAMPLES = """  bk prune --dry-run results/paper
   bk prune results/paper

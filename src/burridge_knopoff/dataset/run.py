@@ -22,7 +22,7 @@ _OPTION = re.compile(r"--(number \w+|[\w-]+)[ =](.*?)(?= --|$)")
 def open_run(path: str | Path, command: str) -> Iterator[netCDF4.Dataset]:
     """Open the point file of the run that a `bk simulate` command starts, without masks.
 
-    Raises BadFile, one line, if the file is missing, damaged, or another run. Files that other sources made are opened.
+    Raises BadFile, one line, if the file is missing, corrupt, or another run. Files that other sources made are opened.
     """
     with open_whole(path) as dataset:
         if (history := getattr(dataset, "history", "")) != command:

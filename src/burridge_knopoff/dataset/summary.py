@@ -86,6 +86,6 @@ def write_summary(dataset: xarray.Dataset, path: str | Path) -> None:
 
 
 def open_summary(path: str | Path) -> xarray.Dataset:
-    """Return an intact summary, loaded into memory. Raises BadFile if the file is missing or damaged."""
+    """Return an intact summary, loaded into memory. Raises BadFile if the file is missing or corrupt."""
     with open_whole(path):
         return xarray.load_dataset(path, engine="netcdf4")

@@ -12,7 +12,7 @@ import netCDF4
 import xarray
 
 from burridge_knopoff.messages import refusal
-from burridge_knopoff.study.damage import check_file
+from burridge_knopoff.study.integrity import check_file
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import all_points
 
@@ -40,7 +40,7 @@ def open_study(results: str | Path) -> StudyResults:
     at the same time: HDF5 would crash.
 
     Raises ValueError, one line, if the folder contains no study of this version. To ask for a file raises KeyError if
-    it is not there, and ValueError, one line with the command that recreates it, if it is damaged or belongs to another
+    it is not there, and ValueError, one line with the command that recreates it, if it is corrupt or belongs to another
     study.
 
     >>> from burridge_knopoff import open_study
@@ -118,6 +118,6 @@ class StudyResults(Mapping[str, xarray.DataTree]):
             return "cannot be read"
 
     def _open(self, name: str) -> xarray.Dataset:
-        # Raises ValueError, one line, if the file is damaged or not the expected one of the study.
+        # Raises ValueError, one line, if the file is corrupt or not the expected one of the study.
         check_file(self._study, self._results, f"{name}.nc", self._record, self._points.get(name))
         return xarray.open_dataset(self._results / f"{name}.nc")

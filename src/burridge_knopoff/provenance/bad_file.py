@@ -16,10 +16,10 @@ REMEDY = "; remake it: "
 class BadFile(ValueError):
     """A file of results that must not be used: one line with file, reason and the command to make it again.
 
-    kind : missing, corrupt, or stale if the file is intact
+    kind : missing, corrupt, or outdated if the file is intact
     """
 
-    def __init__(self, path: str | Path, reason: str, kind: str = "stale") -> None:
+    def __init__(self, path: str | Path, reason: str, kind: str = "outdated") -> None:
         self.path, self.reason, self.kind = Path(path), reason, kind
         super().__init__(f"{escape_unprintable(str(path))}: {reason}{REMEDY}{remake_command(path)}")
 

@@ -72,7 +72,7 @@ def with_origin(text: str, name: str, origin: Origin) -> str:
 def read_origin(path: Path, results: Path) -> tuple[Origin | None, str]:
     """Return the origin of an intact file of a study, and its checksum.
 
-    Raises BadFile if the file is missing or damaged.
+    Raises BadFile if the file is missing or corrupt.
     """
     if path.suffix == ".nc":
         with open_whole(path) as dataset:

@@ -13,6 +13,7 @@ import jinja2
 import xarray
 from markupsafe import Markup
 
+from burridge_knopoff.claims.formats import ROUNDING
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.report import overview, tables
 from burridge_knopoff.report.charts.embedded import Charts, charts
@@ -22,7 +23,7 @@ from burridge_knopoff.report.prose import prose
 from burridge_knopoff.report.runs import Commands, embedded_runs, unclear_runs
 from burridge_knopoff.report.stages import read_stages
 from burridge_knopoff.report.trajectories import embedded_trajectories
-from burridge_knopoff.report.verdicts import SIGNS, Verdicts, read_verdicts
+from burridge_knopoff.report.verdicts import MEANINGS, SIGNS, Verdicts, read_verdicts
 from burridge_knopoff.study.formatting import text
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.agreement import digest
@@ -32,10 +33,11 @@ from burridge_knopoff.summaries.points import Grid
 FOLDER = Path(__file__).parent
 
 #: The scripts of the page, in the order in which they are joined: they share one scope.
-SCRIPTS = ("data", "theme", "charts", "blocks", "runs", "pictures", "start")
+SCRIPTS = ("data", "theme", "charts", "blocks", "runs", "pictures", "claims", "start")
 
 #: Figures with a place in another section than that of the further figures.
 PLACED = (
+    "sketch",
     "mean_distance",
     "bifurcation_diagram",
     "lyapunov",
@@ -127,6 +129,8 @@ def _content_over_a(
     return {
         "convention": overview.convention(verdicts.setting),
         "signs": SIGNS,
+        "meanings": MEANINGS,
+        "rounding": ROUNDING,
         "never_upward": NEVER_UPWARD,
         "section_words": _section_words(study),
         "legends": drawn.legends,

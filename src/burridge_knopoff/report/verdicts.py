@@ -7,28 +7,27 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from burridge_knopoff.claims.formats import group_by_topic, group_untestable
-from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, READING
+from burridge_knopoff.claims.comparison import compare
+from burridge_knopoff.claims.formats import count_sentence, group_by_topic, group_untestable, topic_title
+from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, READING, UNDECIDED
 from burridge_knopoff.provenance.bad_file import BadFile
 
 #: Every verdict with a sign, so that the page does not distinguish them by colour alone.
-SIGNS = {HOLDS: "✓", LOOSELY: "≈", CONVENTION: "⇄", READING: "◇", FAILS: "✗", NOT_TESTABLE: "–"}
+SIGNS = {HOLDS: "✓", LOOSELY: "≈", CONVENTION: "⇄", READING: "◇", FAILS: "✗", UNDECIDED: "?", NOT_TESTABLE: "–"}
 
 #: The paper's three main claims: its abstract on a < 0.1, on the linearization, and on a > 0.1.
 MAIN = ("history_decides", "laws_agree", "chaotic_above")
 
-#: Titles of the topics of the claims.
-TITLES = {
-    "synchronization": "Synchronization of the end blocks",
-    "history": "Dependence on the initial state",
-    "kinds": "Kinds of motion",
-    "locking": "Frequency locking",
-    "section": "Poincaré section",
-    "motion": "Motion of the blocks",
-    "model": "Equations of motion and uniform sliding",
-    "laws": "Linearization of the friction law",
-    "blocks": "Chains of one and two blocks",
-    "solvers": "Methods of solution",
+#: What each verdict means, for a reader of the page.
+MEANINGS = {
+    HOLDS: "true at every value of a that the statement is about; a number, within its tolerance",
+    LOOSELY: "true at nine or more in ten of these values; a number, within twice its tolerance",
+    CONVENTION: "true under one convention, false under another; a convention is a choice of contact and start, of "
+    "which the paper leaves the start open",
+    READING: "true if the wording is taken one way, false if taken another; each way is a reading",
+    FAILS: "false: fewer than nine in ten, or farther than twice the tolerance",
+    UNDECIDED: "too close to call: the study has data, but too few to decide",
+    NOT_TESTABLE: "the study has no data for it",
 }
 
 
@@ -41,6 +40,7 @@ class Verdicts:
     main : the paper's main claims, each a mapping as in the file
     topics : {title of a topic: its claims}; only claims that can be judged
     untestable : {reason: claims that cannot be judged for this reason}
+    numbers : the paper's numbers beside the study's, see `compare`
     setting : v, contact and start for which they were judged, with the provenance
     """
 
@@ -49,12 +49,18 @@ class Verdicts:
     main: list[dict[str, Any]]
     topics: dict[str, list[dict[str, Any]]]
     untestable: dict[str, list[dict[str, Any]]]
+    numbers: list[tuple[str, str, str, str]]
     setting: dict[str, Any]
 
     @property
     def judged(self) -> int:
         """Number of statements with a verdict."""
         return sum(self.counts.values()) - self.counts.get(NOT_TESTABLE, 0)
+
+    @property
+    def summary(self) -> str:
+        """How many independent statements have each verdict, as a sentence."""
+        return f"{count_sentence(self.independent)}."
 
 
 def read_verdicts(path: str | Path | None) -> Verdicts:
@@ -63,12 +69,12 @@ def read_verdicts(path: str | Path | None) -> Verdicts:
     Raises BadFile if the rule `claims` did not write the file.
     """
     if path is None:
-        return Verdicts({}, {}, [], {}, {}, {})
+        return Verdicts({}, {}, [], {}, {}, [], {})
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
         claims, counts, independent = (content.pop(key) for key in ("claims", "counts", "independent_counts"))
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise BadFile(path, f"is not a file of verdicts ({type(error).__name__}: {error})") from None
     main = [claim for name in MAIN for claim in claims if claim["name"] == name]
-    topics = {TITLES.get(topic, topic.capitalize()): of_topic for topic, of_topic in group_by_topic(claims).items()}
-    return Verdicts(counts, independent, main, topics, group_untestable(claims), content)
+    topics = {topic_title(topic): of_topic for topic, of_topic in group_by_topic(claims).items()}
+    return Verdicts(counts, independent, main, topics, group_untestable(claims), compare(claims), content)

@@ -29,7 +29,7 @@ _HEAD = hashlib.sha256().digest_size
 def cached_call(folder: Path, function: Callable[..., Any], *items: Any) -> tuple[Any, Path, bool]:
     """Return the result of a call, its file in the cache, and whether the result was read from there.
 
-    A file that is damaged or holds another result is ignored. Raises OSError, one line, if the file cannot be written.
+    A file that is corrupt or holds another result is ignored. Raises OSError, one line, if the file cannot be written.
     """
     digest = hashlib.sha256(f"{np.__version__} {scipy.__version__}".encode())
     for part in _key_parts([function, *items]):

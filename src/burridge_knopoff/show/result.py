@@ -17,7 +17,7 @@ from burridge_knopoff.provenance.bad_file import BadFile
 from burridge_knopoff.provenance.opening import open_whole
 from burridge_knopoff.provenance.record import read_study_record, study_folder
 from burridge_knopoff.provenance.sources import source_fingerprint
-from burridge_knopoff.study.damage import check_file
+from burridge_knopoff.study.integrity import check_file
 from burridge_knopoff.study.model import motion_of
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import run_files
@@ -108,7 +108,7 @@ def _check(path: Path, folder: Path | None) -> Collection[str]:
 def open_result(path: str | Path) -> Result:
     """Open a point file or a summary, whether the current sources or others made it.
 
-    Raises ValueError, one line, if it is not a netCDF file, missing, damaged, from another program, or not the file
+    Raises ValueError, one line, if it is not a netCDF file, missing, corrupt, from another program, or not the file
     expected in its study.
     """
     path = Path(path)

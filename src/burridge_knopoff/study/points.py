@@ -1,4 +1,4 @@
-"""Simulates those of some points of a study that are missing, damaged or out of date."""
+"""Simulates those of some points of a study that are missing, corrupt or out of date."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from burridge_knopoff.study.study import Study
 
 
 def make_points(study: Study, points: Sequence[Mapping[str, str]], folder: Path) -> int:
-    """Simulate those of some points that are missing, damaged or out of date; return how many there were.
+    """Simulate those of some points that are missing, corrupt or out of date; return how many there were.
 
     points : their wildcards; folder : `points` of the results
     Raises RuntimeError if a point fails, after all others are done: one line with the first such point and its command.

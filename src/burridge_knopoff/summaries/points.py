@@ -132,7 +132,7 @@ def read_point(grid: Grid, point: Sequence[str], names: Sequence[str]) -> dict[s
     """Return the named variables of one point.
 
     point : law, initial state and names of the values of the parameters
-    Raises BadFile, one line, if the file is missing, damaged, or another run.
+    Raises BadFile, one line, if the file is missing, corrupt, or another run.
     """
     with open_run(grid.path(*point), grid.command(*point)) as dataset:
         return {name: dataset[name][...] for name in names}

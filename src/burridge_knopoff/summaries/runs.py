@@ -93,7 +93,7 @@ def summarize(grid: Grid, period_tolerance: float, longest_period: float) -> xar
     """Return the scalars of all runs.
 
     period_tolerance, longest_period : of a repetition, see `MotionSettings`
-    Raises BadFile, one line, for a point that is missing, damaged or out of date.
+    Raises BadFile, one line, for a point that is missing, corrupt or out of date.
     """
     motion = MotionSettings(period_tolerance=period_tolerance, longest_period=longest_period)
 

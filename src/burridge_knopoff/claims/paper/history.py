@@ -213,7 +213,7 @@ def phases_decide(
     sliding.
 
     The paper does not mention the inner block. If it slides uniformly, only the end blocks oscillate. The claim
-    depends on reading if it holds for one computed amplitude of the inner block and fails for another.
+    is ambiguous if it holds for one computed amplitude of the inner block and fails for another.
 
     inner_share : amplitude of the inner blocks, as a fraction, of the judged states; other fractions are reported too
     close, opposite : phase difference in degrees up to which phases are close, and from which they are opposite

@@ -11,13 +11,7 @@ function openPicture(event) {
   viewer.showModal();
 }
 
-// Not every browser prints the content of a closed part.
-function unfoldForPrint() {
-  document.querySelectorAll(".claim-more").forEach((part) => { part.open = true; });
-}
-
 function startPictures() {
-  window.addEventListener("beforeprint", unfoldForPrint);
   document.querySelectorAll(".opens-picture, .picture img").forEach((link) => link.addEventListener("click", openPicture));
   const viewer = byId("viewer");
   byId("viewer-close").addEventListener("click", () => viewer.close());

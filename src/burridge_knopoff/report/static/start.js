@@ -6,5 +6,6 @@ if (document.documentElement.classList.contains("js")) {
     startRuns();
   }
   startPictures();
+  startClaims();
   startCharts();
 }

@@ -20,7 +20,7 @@ def check_file(
     """Check a file of a study, by its name in the results; return its origin, None for a run, and its checksum.
 
     record : of the study; run : the wildcards of the run if it is a point file, see `run_files`
-    Raises BadFile, one line with the difference, if the file is missing, damaged, or not the expected one. Files that
+    Raises BadFile, one line with the difference, if the file is missing, corrupt, or not the expected one. Files that
     other sources made are accepted.
     """
     if run is None:
@@ -29,16 +29,16 @@ def check_file(
         return None, dataset.checksum
 
 
-def damaged_files(study: Study, results: Path, names: Iterable[str]) -> list[tuple[Path, str]]:
-    """Return damaged texts and pictures, which few jobs read, and marks of incomplete chunks, each with the reason.
+def corrupt_files(study: Study, results: Path, names: Iterable[str]) -> list[tuple[Path, str]]:
+    """Return corrupt texts and pictures, which few jobs read, and marks of incomplete chunks, each with the reason.
 
     names : of the files of the study in its results
     """
-    damaged, sums, marks = [], read_sums(results), incomplete_chunks(study, results)
+    corrupt, sums, marks = [], read_sums(results), incomplete_chunks(study, results)
     for name in names:
         if not name.endswith((".nc", ".done")) and (results / name).is_file():
             try:
                 check_sum(results, name, sums)
             except BadFile as error:
-                damaged.append((error.path, error.reason))
-    return [*damaged, *((mark, "a point of this chunk is missing or was changed") for mark in marks)]
+                corrupt.append((error.path, error.reason))
+    return [*corrupt, *((mark, "a point of this chunk is missing or was changed") for mark in marks)]
