@@ -48,13 +48,14 @@ class SearchSettings:
     time_limit: Annotated[
         float,
         TIME,
-        "time by which a trajectory of the search has to reach a known attractor; states that are counted, as in basin "
-        "fractions, are undetermined after ten times this limit",
+        "longest time a trajectory of the search may take to reach a known attractor; states drawn for basin fractions "
+        "get ten times as long, then count as undetermined",
     ] = 20_000.0
     resolution: Annotated[
         float,
         Number(1e-6, 0.1),
-        "attractors closer than this in positions and velocities count as one; for v = 0.1, scales with v",
+        "attractors closer than this in positions and velocities count as one; given for v = 0.1, and scaled in "
+        "proportion to v",
     ] = 1e-3
     perturbations: Annotated[
         int,

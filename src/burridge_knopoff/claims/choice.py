@@ -160,7 +160,7 @@ Close = Annotated[
 Opposite = Annotated[
     float, Along("the phase difference from which phases are opposite", "phases", "phase_difference", is_bound=True)
 ]
-InnerShare = Annotated[float, Along("the amplitude of the inner block over A", "phases", "inner_share")]
+InnerShare = Annotated[float, Along("the amplitude of the middle block over A", "phases", "inner_share")]
 Level = Annotated[float, Along("the level below which J counts as 0", "mean_distance", "level")]
 Detuning = Annotated[float, Along("the detuning", "rotation", "detuning")]
 RunPart = Annotated[str, Part()]

@@ -206,7 +206,7 @@ CONFIG = Keys(
         "study": Field(STUDY_NAME, "name of the study and of its folder in results/"),
         "a": Field(
             VALUES,
-            "friction parameters, in any order; a range includes both ends, and step divides its length",
+            "friction parameters, in any order; from and to are included, and to − from must be a multiple of step",
             FOLLOWS,
         ),
         "grid": Field(

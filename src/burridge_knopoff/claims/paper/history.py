@@ -212,8 +212,8 @@ def phases_decide(
     velocity is positive at the start, whatever the phases: only these states are oscillations about uniform
     sliding.
 
-    The paper does not mention the inner block. If it slides uniformly, only the end blocks oscillate. The claim
-    is ambiguous if it holds for one computed amplitude of the inner block and fails for another.
+    The paper does not mention the middle block. If it slides uniformly, only the end blocks oscillate. The claim
+    is ambiguous if it holds for one computed amplitude of the middle block and fails for another.
 
     inner_share : amplitude of the inner blocks, as a fraction, of the judged states; other fractions are reported too
     close, opposite : phase difference in degrees up to which phases are close, and from which they are opposite
@@ -268,5 +268,5 @@ def phases_decide(
 
 
 def _format_inner_block(share: float) -> str:
-    """Describe the motion of the inner block."""
-    return "the inner block sliding uniformly" if share == 0.0 else f"the inner block oscillating with {share:g} A"
+    """Describe the motion of the middle block."""
+    return "the middle block sliding uniformly" if share == 0.0 else f"the middle block oscillating with {share:g} A"
