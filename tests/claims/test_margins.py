@@ -123,7 +123,7 @@ def test_both_halves_of_the_grid_are_one_choice():
 def test_other_values_with_data_are_tried(name):
     """Amplitudes of the inner blocks and levels of J: no value between them can be judged."""
     words, summary = {
-        "inner_share": ("the amplitude of the inner block over A", "phases"),
+        "inner_share": ("the amplitude of the middle block over A", "phases"),
         "level": ("the level below which J counts as 0", "mean_distance"),
     }[name]
     world = Evidence({summary: xarray.Dataset(coords={name: [0.0, 0.3, 1.0]})}, {})

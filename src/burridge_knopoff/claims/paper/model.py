@@ -266,8 +266,8 @@ def map_dimension(
     verdict = FAILS if numbers != claimed else HOLDS if left.min() == claimed else LOOSELY
     removed, remaining = (span(f"{count.min():.0f}", f"{count.max():.0f}") for count in (lost, left))
     reason = (
-        f"A state has {numbers} components. Sticking destroys {removed} of these dimensions for good ({law}), so the map "
-        f"acts on {remaining}."
+        f"A state has {numbers} components. Sticking destroys {removed} of these dimensions for good ({law}), so the "
+        f"map acts on {remaining}."
     )
     return Verdict(verdict, reason, measured)
 
