@@ -1,7 +1,8 @@
 """Update the generated parts of the documentation from the study that `make` runs: `make docs`.
 
-Generated are the ledger of claims (docs/claims.json, its text in docs/claims.md, the headline of the README), the
-branches of attractors (docs/branches.json, their table in docs/attractors.md) and the figures of docs/.
+Generated are the ledger of claims (docs/claims.json, its text in docs/claims.md, the numbers and the headline of the
+README), the branches of attractors (docs/branches.json, their table in docs/attractors.md), the table of costs in
+docs/performance.md, and the figures of docs/.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from burridge_knopoff.claims.formats import as_json, as_markdown, count_sentence
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.provenance.files import write_text
 from burridge_knopoff.report.numbers import with_powers_of_ten
+from burridge_knopoff.report.stages import read_stages
 from burridge_knopoff.study.formatting import span
 
 if TYPE_CHECKING:
@@ -34,6 +36,9 @@ BEGIN, END = "<!-- made by `make docs` -->", "<!-- end -->"
 
 # The table of branches lists those that exist at this many values of a under some law.
 LONG = 5
+
+# Rules that take less CPU time than this, in seconds, are left out of the table of costs.
+LONGEST = 10.0
 
 # Wide enough for a page on a screen, at a third of the bytes of the figures for print.
 WIDTH = 1400
@@ -112,6 +117,19 @@ def pages(ledger: Mapping[str, Any], entries: Sequence[Mapping[str, Any]]) -> di
     }
 
 
+def stage_table(results: Path) -> str:
+    """Return the measured cost of the stages of a study that take at least LONGEST seconds of CPU time."""
+    stages = read_stages(results / "benchmarks")
+    rows = ["| rule | jobs | wall time, s | CPU time, s | memory, MB |", "| --- | ---: | ---: | ---: | ---: |"]
+    rows += [
+        f"| {stage.name} | {stage.jobs} | {stage.wall:.0f} | {stage.cpu:.0f} | {stage.memory:.0f} |"
+        for stage in stages
+        if stage.cpu >= LONGEST
+    ]
+    minutes = sum(stage.cpu for stage in stages) / 60.0
+    return "\n".join(rows) + f"\n\nThe jobs took {minutes:.0f} CPU minutes in all.\n"
+
+
 def figure_names() -> set[str]:
     """Return the names of the study's figures that the pages of docs/ and the README show or link."""
     texts = [path.read_text(encoding="utf-8") for path in [*DOCS.glob("*.md"), DOCS.parent / "README.md"]]
@@ -144,6 +162,8 @@ def main(results: Path) -> None:
     write_text(BRANCHES, json.dumps(entries, ensure_ascii=False, indent=1) + "\n")
     for path, block in pages(ledger, entries).items():
         write_text(path, replace_block(path.read_text(encoding="utf-8"), block))
+    performance = DOCS / "performance.md"
+    write_text(performance, replace_block(performance.read_text(encoding="utf-8"), stage_table(results)))
     for name in sorted(figure_names()):
         if (source := results / f"figures/{name}.png").exists():
             copy_figure(source)

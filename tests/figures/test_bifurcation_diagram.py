@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from burridge_knopoff.attractors.lookup import CROSSINGS
-from burridge_knopoff.figures.bifurcation_diagram import draw
+from burridge_knopoff.figures.bifurcation_diagram import dense_values, draw
 
 
 def runs():
@@ -29,3 +29,11 @@ def test_the_last_points_of_each_run_are_drawn():
     upward = np.concatenate([np.array(line.get_data()).T for line in panel.get_lines()[:4]]).tolist()
     assert len(upward) == 2 * (CROSSINGS // 2)
     assert upward[CROSSINGS // 2 - 1] == [0.1, runs()["crossing_velocity"].values[2 * CROSSINGS - 1]]
+
+
+def test_points_of_a_cloud_are_small_and_those_of_a_period_are_large():
+    """A run of one orbit repeats its points, to rounding."""
+    a = np.repeat([0.1, 0.2], 100)
+    velocity = np.append(np.tile([0.1, 0.3], 50) + 1e-9 * np.arange(100), np.linspace(0.1, 0.3, 100))
+    assert dense_values(a, velocity).tolist() == [0.2]
+    assert dense_values(a[:0], velocity[:0]).tolist() == []

@@ -64,3 +64,17 @@ def test_no_two_blocks_that_are_named_look_the_same(point):
     many = point.isel(block=[0] * motion.MOST_NAMED).assign_coords(blocks)
     lines = motion.draw({"plus": many}).axes[0].get_lines()
     assert len({(line.get_color(), str(line._dash_pattern)) for line in lines}) == motion.MOST_NAMED
+
+
+def test_the_end_of_a_run_is_drawn_below_a_band_of_j_and_not_over_a_curve(point):
+    count = len(point["distance"])
+    band = point.assign(distance=(point["distance"].dims, np.full(count, 0.1)))
+    linear, _ = distance.draw({"plus": band}).axes[:2]
+    (inset,) = linear.child_axes
+    (curve,) = inset.get_lines()
+    assert curve.get_xdata().tolist() == point["trajectory_time"].values.tolist()
+    position, velocity = (point[name].values for name in ("position", "velocity"))
+    expected = np.hypot(position[:, -1] - position[:, 0], velocity[:, -1] - velocity[:, 0])
+    assert curve.get_ydata() == pytest.approx(expected)
+    falling = point.assign(distance=(point["distance"].dims, np.exp(-0.1 * np.arange(count))))
+    assert not distance.draw({"plus": falling}).axes[0].child_axes

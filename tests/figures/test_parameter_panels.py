@@ -7,7 +7,7 @@ from matplotlib.colors import to_rgb
 
 from burridge_knopoff.figures import grid_distance, grid_exponents, grid_kinds
 from burridge_knopoff.figures.palette import KINDS
-from burridge_knopoff.figures.parameter_panels import MOST
+from burridge_knopoff.figures.parameter_panels import MOST, panels_across
 from burridge_knopoff.figures.style import write_figure
 
 
@@ -97,3 +97,11 @@ def test_exponents_that_were_not_computed_are_said_to_be_none(tmp_path):
     figure = grid_exponents.draw(summary(a=A, sigma=SIGMA).isel(exponent=slice(0)))
     write_figure(figure, tmp_path / "none.png")
     assert [text.get_text() for text in figure.axes[0].texts] == ["no exponents were computed"]
+
+
+@pytest.mark.parametrize(
+    ("count", "of_law", "across"),
+    [(1, 1, 1), (2, 1, 2), (2, 2, 2), (3, 1, 3), (4, 2, 2), (6, 3, 3), (8, 4, 2), (9, 9, 3), (10, 5, 2), (5, 5, 3)],
+)
+def test_panels_of_a_law_are_side_by_side_or_none_hangs_alone(count, of_law, across):
+    assert panels_across(count, of_law) == across
