@@ -37,7 +37,7 @@ BEGIN, END = "<!-- made by `make docs` -->", "<!-- end -->"
 # The table of branches lists those that exist at this many values of a under some law.
 LONG = 5
 
-# Rules that take less CPU time than this, in seconds, are left out of the table of costs.
+# Rules that take less time than this, in seconds, are left out of the table of costs.
 LONGEST = 10.0
 
 # Wide enough for a page on a screen, at a third of the bytes of the figures for print.
@@ -118,16 +118,16 @@ def pages(ledger: Mapping[str, Any], entries: Sequence[Mapping[str, Any]]) -> di
 
 
 def stage_table(results: Path) -> str:
-    """Return the measured cost of the stages of a study that take at least LONGEST seconds of CPU time."""
+    """Return the measured cost of the stages of a study that take at least LONGEST seconds."""
     stages = read_stages(results / "benchmarks")
     rows = ["| rule | jobs | wall time, s | CPU time, s | memory, MB |", "| --- | ---: | ---: | ---: | ---: |"]
     rows += [
-        f"| {stage.name} | {stage.jobs} | {stage.wall:.0f} | {stage.cpu:.0f} | {stage.memory:.0f} |"
+        f"| {stage.name} | {stage.jobs} | {stage.wall:.0f} "
+        + (f"| {stage.cpu:.0f} | {stage.memory:.0f} |" if stage.cpu_jobs else "| – | – |")
         for stage in stages
-        if stage.cpu >= LONGEST
+        if stage.wall >= LONGEST
     ]
-    minutes = sum(stage.cpu for stage in stages) / 60.0
-    return "\n".join(rows) + f"\n\nThe jobs took {minutes:.0f} CPU minutes in all.\n"
+    return "\n".join(rows) + "\n"
 
 
 def figure_names() -> set[str]:
