@@ -98,13 +98,13 @@ def test_differences_of_0_lie_at_the_foot_and_are_said():
     # The shading leaves the columns alike.
     assert len({panel.get_xlim() for panel in figure.axes}) == 1
     (legend,) = figure.legends
-    assert "undecided" not in [text.get_text() for text in legend.get_texts()]
+    assert not any("undecided" in text.get_text() for text in legend.get_texts())
 
 
 def test_laws_of_which_nobody_knows_whether_they_agree_have_open_symbols():
     figure = agreement.draw(compared(agrees=[1, -1]))
     (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()][-1] == "undecided"
+    assert [text.get_text() for text in legend.get_texts()][-1] == "undecided: difference close to tolerance"
     for panel in figure.axes:
         (hollow,) = [line for line in panel.get_lines() if line.get_markerfacecolor() == "white"]
         assert np.isfinite(hollow.get_ydata()).tolist() == [False, True]

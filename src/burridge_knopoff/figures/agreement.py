@@ -85,7 +85,7 @@ def draw(agreement: xarray.Dataset) -> Figure:
     if (agreement["agrees"] == Answer.NO).any():
         handles.append(shade_entry("the laws disagree"))
     if (agreement["agrees"] == Answer.UNDETERMINED).any():
-        handles.append(Line2D([], [], **POINT, **UNKNOWN, label="undecided"))
+        handles.append(Line2D([], [], **POINT, **UNKNOWN, label="undecided: difference close to tolerance"))
     legend_below(figure, handles)
     label_panels(panels, titles)
     return figure
