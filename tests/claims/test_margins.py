@@ -228,14 +228,16 @@ def test_a_change_under_one_convention_is_given():
 
     parameters = {"tolerance": 1.0}
     (text,) = changes(judge, NOTHING, parameters, judge(NOTHING, parameters))
-    assert text.startswith("depends on convention (other: holds loosely) if the tolerance were at least 1.5")
+    assert text.startswith("still depends on convention, but other: holds loosely, if the tolerance were at least 1.5")
 
     def fewer(_evidence, parameters):
         under = {"own": FAILS, "other": HOLDS, **({} if parameters["tolerance"] > 1.5 else {"third": HOLDS})}
         return Verdict(CONVENTION, "", conventions=under, own=FAILS)
 
     (text,) = changes(fewer, NOTHING, parameters, fewer(NOTHING, parameters))
-    assert text.startswith("depends on convention (third: cannot be judged) if the tolerance were at least 1.5")
+    assert text.startswith(
+        "still depends on convention, but third: cannot be judged, if the tolerance were at least 1.5"
+    )
 
 
 def test_the_neighbours_of_the_value_of_a_claim_are_tried():

@@ -26,7 +26,8 @@ def _settling(values: Values) -> str:
 
 def _frequencies(values: Values) -> str:
     velocity = values["frequency of the velocity of block 1 over that of block 2"]
-    return f"{velocity:.3f}; {values['stops of block 1 over stops of block 2']:.3f} if stops are counted"
+    stops = values["stops of block 1 over stops of block 2"]
+    return f"{velocity:.3f} from the peaks of the spectra; {stops:.3f} from counting stops"
 
 
 def _cycle(values: Values) -> str:
@@ -36,7 +37,7 @@ def _cycle(values: Values) -> str:
         medians = [value for name, value in values.items() if f"successive stops {words}" in name]
         texts.append(f"{min(medians):.1f} to {max(medians):.1f} {short}")
     middle = next(value for name, value in values.items() if "of the middle block" in name)
-    return f"{'; '.join(texts)}; {middle:.1f} for the middle block from `plus` at a = 0.08"
+    return f"{' and '.join(texts)} (medians over a); {middle:.1f} for the middle block from `plus` at a = 0.08"
 
 
 def _chaos(values: Values) -> str:

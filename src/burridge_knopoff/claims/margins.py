@@ -66,7 +66,7 @@ def difference(verdict: Verdict, other: Verdict) -> str:
     conventions = verdict.conventions
     changed = [f"{name}: {judged}" for name, judged in other.conventions.items() if judged != conventions.get(name)]
     changed += [f"{name}: cannot be judged" for name in conventions if name not in other.conventions]
-    return f"{verdict.verdict} ({'; '.join(changed)})" if changed else ""
+    return f"still {verdict.verdict}, but {'; '.join(changed)}," if changed else ""
 
 
 def _grid_choices(changed_verdict: ChangedVerdict, evidence: Evidence, parameters: Mapping[str, Any]) -> Iterator[str]:

@@ -19,9 +19,10 @@ INPUTS = ("bifurcation_diagram",)
 CAPTION = """\
 Section points W' on the section W = 0 versus a, for each law and initial state: upward crossings have W' > 0, downward
 crossings W' < 0. W is the sum of the positions relative to uniform sliding, or the position of one block if the config
-sets `section`. At W' = −Nv, with W of all N blocks, all of them stick at the crossing. Crossings slower than 10⁻⁹ are
-rounding errors of uniform sliding and are left out. At a = 0 the paper's laws are constant: free oscillations neither
-grow nor decay, and their several frequencies give a band.
+sets `section`. At W' = −Nv (−0.3 for three blocks at v = 0.1), with W of all N blocks, all of them stick at the
+crossing. Points are larger where a run has only a few. Crossings slower than 10⁻⁹ are rounding errors of uniform
+sliding and are left out. At a = 0 the paper's laws are constant: free oscillations neither grow nor decay, and their
+several frequencies give a band.
 """
 
 # With more values of a than this, the points of a cloud are drawn small, to resolve it; with fewer, large.

@@ -47,7 +47,7 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
         if top is not None:
             _inset(linear, point, top)
         if top is not None and np.nanmax(distance) > top:
-            linear.text(0.07, 0.95, f"$J(0)={distance[0]:.2g}$", va="top", transform=linear.transAxes)
+            linear.text(0.07, 0.95, f"$J(0)={distance[0]:.3g}$", va="top", transform=linear.transAxes)
         logarithmic.plot(time, np.where(distance >= FLOOR, distance, np.nan), color="black", linewidth=0.5)
         logarithmic.set_yscale("log")
         scale_to_decades(logarithmic)
@@ -70,9 +70,9 @@ def _inset(panel: Axes, point: xarray.Dataset, top: float) -> None:
     if not np.nanmin(settled) > ROOM * top or not point.sizes.get("trajectory_time"):
         return
     position, velocity = (point[name].isel(block=[0, -1]).diff("block").values for name in ("position", "velocity"))
-    inset = panel.inset_axes((0.06, 0.12, 0.88, 0.9 * np.nanmin(settled) / top - 0.12))
+    inset = panel.inset_axes((0.13, 0.12, 0.82, 0.9 * np.nanmin(settled) / top - 0.12))
     inset.plot(point["trajectory_time"], np.hypot(position, velocity), color="black", linewidth=0.6)
-    inset.tick_params(labelsize=6.5, labelleft=False, pad=1.5)
+    inset.tick_params(labelsize=6.0, pad=1.5)
     inset.margins(x=0.0)
     inset.locator_params(nbins=4)
 

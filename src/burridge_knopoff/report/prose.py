@@ -43,7 +43,7 @@ _IN_FORMULA = re.compile(
         [
             rf"(?<![\w>])(?:[aAc])(?= ?{_RELATION})",
             *(rf"(?<={sign} )(?:[ac])\b(?!\.\w)" for sign in ("[=≤≥]", "&lt;", "&gt;")),
-            *(rf"(?<=\b{word} )a\b" for word in (*_BEFORE, "values of")),
+            *(rf"(?<=\b{word} )a\b" for word in (*_BEFORE, "values of", "value of")),
             *(rf"(?<=\b{word} )a(?=[,.;:)]| (?:{_AFTER})\b|$)" for word in ("of", "in", "along", "against", "and")),
             *(rf"(?<=\b{word} )a(?=[,.;:)]| between\b|$)" for word in ("for", "with")),
             r"(?<=, )a(?=\))",

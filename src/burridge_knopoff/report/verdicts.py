@@ -21,7 +21,8 @@ MAIN = ("history_decides", "laws_agree", "chaotic_above")
 #: What each verdict means, for a reader of the page.
 MEANINGS = {
     HOLDS: "true at every value of a that the statement is about; a number, within its tolerance",
-    LOOSELY: "true at nine or more in ten of these values; a number, within twice its tolerance",
+    LOOSELY: "true at nine or more in ten of these values; a number, within twice its tolerance; otherwise in the "
+    "weaker sense that the reason gives",
     CONVENTION: "true under one convention, false under another; a convention is a choice of contact and start, of "
     "which the paper leaves the start open",
     READING: "true if the wording is taken one way, false if taken another; each way is a reading",

@@ -62,7 +62,7 @@ def laws_agree(
         ),
     ]
     tolerance = 100.0 * laws.attrs["relative_tolerance"]
-    words = f"The laws agree in ⟨J⟩, whose largest value is {scale:.3f}, within {tolerance:g} %"
+    words = f"Under the two laws ⟨J⟩ (up to {scale:.3f}) agrees within {tolerance:g} %"
     readings = {"of the largest value": of_largest, "of the value at each a": laws["same_mean_distance"]}
     return _judge_agreement(evidence, words, readings, a, loose_share, measured)
 
