@@ -56,7 +56,7 @@ def complete(app: Sphinx, page: str, source: list[str]) -> None:
     text = re.sub(r"^(```\w+) (\S+)$", r"`\2`\n\n\1", text, flags=re.MULTILINE)
     if page == root_doc:
         listed = text.split("## Documentation")[1].split("\n## ")[0]
-        for caption, links in re.findall(r"^- ([\w ]+): (.*(?:\n  .*)*)", listed, re.MULTILINE):
+        for caption, links in re.findall(r"^- ([\w, ]+): (.*(?:\n  .*)*)", listed, re.MULTILINE):
             pages = re.findall(r"\]\(([\w/]+)\.md\)", links)
             text += f"\n```{{toctree}}\n:hidden:\n:caption: {caption}\n\n" + "\n".join(pages) + "\n```\n"
     elif page == "docs/api":

@@ -206,7 +206,7 @@ def test_a_section_has_the_evidence_of_its_claim(content: dict) -> None:
     assert f"| A\\|B. | ambiguous (dependent) | [{claim['name']}](#{claim['name']}) |" in "\n".join(lines).splitlines()
     assert lines[lines.index(f"#### {claim['name']}") + 1 :] == [
         f"*A|B.* ({claim['place']})",
-        "**Depends on reading** (under the first reading: holds). Why.",
+        "**Ambiguous** (under the first reading: holds). Why.",
         "Exceptions and other cases:",
         "- here\n- not [other_claim](#other_claim)",
         "What would change the verdict:",
