@@ -71,6 +71,15 @@ def test_the_laws_agree_as_often_as_the_study_says(repository):
     assert f"and at {plus} from `plus`" in text
 
 
+def test_plus_synchronizes_as_often_as_the_ledger_says(repository, claims):
+    measured = {item["quantity"]: item["value"] for item in claims["plus_does_not_synchronize"]["measured"]}
+    ours = [round(100 * (1 - measured[f"share of a with no synchrony, {law}"])) for law in ("linearized", "nonlinear")]
+    text = " ".join((repository / "README.md").read_text(encoding="utf-8").split())
+    assert (
+        "at {} % (linearized law) and {} % (nonlinear law) of the values of a from 0.005 to 0.08".format(*ours) in text
+    )
+
+
 def test_the_times_of_a_cycle_are_those_of_the_ledger(repository, claims):
     reason = claims["cycle_time"]["reason"]
     interval, *_ = re.findall(r"([\d.]+) to ([\d.]+) between successive stops of one block", reason)
