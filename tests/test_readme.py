@@ -100,6 +100,15 @@ def test_the_time_of_the_study_is_that_of_a_dry_run(repository, tmp_path):
         assert f"{minutes} minutes on two cores" in text
 
 
+def test_the_map_of_basins_is_drawn_by_the_first_lines_of_python(repository, tmp_path, monkeypatch):
+    text = (repository / "README.md").read_text(encoding="utf-8")
+    lines = re.findall(r"^>>> (.*)$", re.search(r"```python\n(.*?)```", text, re.DOTALL)[1], re.MULTILINE)
+    monkeypatch.chdir(tmp_path)
+    exec("\n".join(lines), names := {})
+    assert (tmp_path / "basins.png").stat().st_size > 10_000
+    assert {0, 1, 2} == {*names["maps"]["branch"].values.ravel().tolist()}
+
+
 def test_pictures_and_linked_files_exist(repository):
     text = (repository / "README.md").read_text(encoding="utf-8")
     for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text):
