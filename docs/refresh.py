@@ -37,8 +37,8 @@ BEGIN, END = "<!-- made by `make docs` -->", "<!-- end -->"
 # The table of branches lists those that exist at this many values of a under some law.
 LONG = 5
 
-# Rules that take less time than this, in seconds, are left out of the table of costs.
-LONGEST = 10.0
+# The table of costs lists rules that take at least this time, in seconds.
+LISTED = 10.0
 
 # Wide enough for a page on a screen, at a third of the bytes of the figures for print.
 WIDTH = 1400
@@ -118,14 +118,14 @@ def pages(ledger: Mapping[str, Any], entries: Sequence[Mapping[str, Any]]) -> di
 
 
 def stage_table(results: Path) -> str:
-    """Return the measured cost of the stages of a study that take at least LONGEST seconds."""
+    """Return the measured cost of the stages of a study that take at least LISTED seconds."""
     stages = read_stages(results / "benchmarks")
     rows = ["| rule | jobs | wall time, s | CPU time, s | memory, MB |", "| --- | ---: | ---: | ---: | ---: |"]
     rows += [
         f"| {stage.name} | {stage.jobs} | {stage.wall:.0f} "
         + (f"| {stage.cpu:.0f} | {stage.memory:.0f} |" if stage.cpu_jobs else "| – | – |")
         for stage in stages
-        if stage.wall >= LONGEST
+        if stage.wall >= LISTED
     ]
     return "\n".join(rows) + "\n"
 

@@ -15,12 +15,12 @@ import xarray
 from burridge_knopoff.claims.choice import Along, Tolerance
 from burridge_knopoff.claims.claim import Claim
 from burridge_knopoff.claims.claim import claim as register
-from burridge_knopoff.claims.conventions import rounded_state_changes
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.formats import as_csv, as_json, as_markdown
 from burridge_knopoff.claims.ledger import judge, ledger
 from burridge_knopoff.claims.paper import CLAIMS, OWN, READS
 from burridge_knopoff.claims.range import Range
+from burridge_knopoff.claims.rounding import rounded_state_changes
 from burridge_knopoff.claims.verdict import (
     HOLDS,
     NOT_TESTABLE,

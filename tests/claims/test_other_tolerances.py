@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff.claims.conventions import rounded_state_changes
 from burridge_knopoff.claims.ledger import judge, ledger
 from burridge_knopoff.claims.other_tolerances import other_tolerances
 from burridge_knopoff.claims.paper import CLAIMS
 from burridge_knopoff.claims.range import Range
+from burridge_knopoff.claims.rounding import rounded_state_changes
 from burridge_knopoff.claims.verdict import FAILS, HOLDS
 from burridge_knopoff.motion.kind import MotionKind
 from tests.claims.worlds import evidence, paper_world

@@ -337,26 +337,27 @@ def test_eq_2_is_what_a_run_solves() -> None:
 @pytest.mark.parametrize(
     ("shares", "expected"),
     [
-        ({"linearized": (20, 20), "nonlinear": (20, 20)}, "at every value of a with a > 0, under both laws"),
-        ({"minus": (0, 20), "plus": (0, 20)}, "at no value of a with a > 0, from both states"),
-        ({"linearized, minus": (20, 20)}, "at every value of a with a > 0 (linearized, minus)"),
+        ({"linearized": (20, 20), "nonlinear": (20, 20)}, "at all 20 values of a with a > 0, under both laws"),
+        ({"minus": (0, 20), "plus": (0, 20)}, "at none of the 20 values of a with a > 0, from both states"),
+        ({"linearized, minus": (20, 20)}, "at all 20 values of a with a > 0 (linearized, minus)"),
         ({"linearized": (20, 20), "nonlinear": (19, 20)}, "at 100 % (linearized) and 95.0 % (nonlinear) of the values"),
         ({"linearized": (20, 20), "nonlinear": (0, 20)}, "at 100 % (linearized) and 0 % (nonlinear) of the values"),
+        ({"linearized": (20, 20), "nonlinear": (19, 19)}, "at 100 % (linearized) and 100 % (nonlinear) of the values"),
         # Few values are counted.
         ({"linearized": (3, 3), "nonlinear": (3, 3)}, "at 3 of 3 (linearized) and 3 of 3 (nonlinear) of the values"),
     ],
 )
 def test_what_is_true_everywhere_is_said_in_words(shares, expected):
-    text = at_values({name: Share(*counts) for name, counts in shares.items()}, "with a > 0")
+    text = at_values({name: Share(*counts) for name, counts in shares.items()}, "a > 0")
     assert text.startswith(expected)
     (first, *_) = shares.values()
-    alone = at_values(Share(*first), "with a > 0")
+    alone = at_values(Share(*first), "a > 0")
     assert "(" not in alone
     assert "law" not in alone
 
 
 def test_all_pairs_of_laws_and_states_are_named_as_such():
     names = [f"{law}, {state}" for law in ("linearized", "nonlinear") for state in ("minus", "plus")]
-    text = at_values(dict.fromkeys(names, Share(10, 10)), "")
-    assert text == "at every value of a, from both states, under both laws"
-    assert at_values(dict.fromkeys(names[:3], Share(10, 10)), "").endswith(f"({'; '.join(names[:3])})")
+    text = at_values(dict.fromkeys(names, Share(10, 10)))
+    assert text == "at all 10 values of a, from both states, under both laws"
+    assert at_values(dict.fromkeys(names[:3], Share(10, 10))).endswith(f"({'; '.join(names[:3])})")

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+from burridge_knopoff.study.paper import PAPER_LAWS
+
 #: {quantity: value} of the numbers behind a verdict.
 Values = Mapping[str, float]
 
 
 def _both_laws(quantity: str, digits: int, values: Values) -> str:
-    linearized, nonlinear = (values[f"{quantity}, {law}"] for law in ("linearized", "nonlinear"))
+    linearized, nonlinear = (values[f"{quantity}, {law}"] for law in PAPER_LAWS)
     return f"{linearized:.{digits}f} (linearized law) and {nonlinear:.{digits}f} (nonlinear law)"
 
 

@@ -7,11 +7,9 @@ leaves the start open, but not the contact: its condition for a stuck block to m
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-
-import xarray
+from typing import TYPE_CHECKING
 
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.range import Range
 from burridge_knopoff.claims.verdict import (
     CONVENTION,
     FAILS,
@@ -20,15 +18,14 @@ from burridge_knopoff.claims.verdict import (
     OPEN,
     READING,
     Measured,
-    NotTestableError,
     UndecidedError,
     Verdict,
     join_words,
     worst_verdict,
 )
-from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.study.formatting import format_count, format_values
-from burridge_knopoff.study.paper import PAPER_LAWS
+
+if TYPE_CHECKING:
+    import xarray
 
 #: A stuck block moves again when the spring force is *greater* than the static friction.
 PAPER_CONTACT = "one_sided"
@@ -91,58 +88,3 @@ def combine_readings(
 def _is_divided(verdicts: Mapping[str, str]) -> bool:
     """Return whether some verdict is «fails» and some «holds», at least loosely."""
     return FAILS in verdicts.values() and not {HOLDS, LOOSELY}.isdisjoint(verdicts.values())
-
-
-def rounded_state_changes(
-    evidence: Evidence, initial: Sequence[str], laws: Sequence[str], a: Range
-) -> dict[tuple[str, str], xarray.DataArray]:
-    """Return at which a some states that round to the paper's reach another attractor than the paper's states.
-
-    By (state, law), without those that have none; true or false, over a. The paper gives positions to three decimals:
-    see `rounded_branch` of attractors.nc.
-    """
-    if "attractors" not in evidence.summaries:
-        return {}
-    attractors = evidence.own_attractors()
-    attractors = attractors.isel(a=a.choose(attractors["a"].values))
-    values = {}
-    for state in (name for name in initial if name in attractors["initial"]):
-        for law in (name for name in laws if name in attractors["law"]):
-            own, others = (
-                attractors[name].sel(law=law, initial=state).values for name in ("initial_branch", "rounded_branch")
-            )
-            differs = ((others != own[:, None]) & (others >= 0) & (own >= 0)[:, None]).any(axis=1)
-            if differs.any():
-                values[state, law] = xarray.DataArray(differs, {"a": attractors["a"]}, "a")
-    return values
-
-
-def describe_rounding(evidence: Evidence) -> list[str]:
-    """Describe all values of a at which the last digit of the paper's initial states decides, a text for each state."""
-    try:
-        evidence.check_setting()
-        evidence.check_blocks()
-        evidence.check_laws(PAPER_LAWS)
-        for state in PAPER_STATES:
-            evidence.check_state(state)
-    except NotTestableError:
-        return []
-    values = rounded_state_changes(evidence, list(PAPER_STATES), PAPER_LAWS, Range())
-    texts = []
-    for state in PAPER_STATES:
-        of_state = {law: differs for (name, law), differs in values.items() if name == state}
-        places = [f"{format_values(at['a'].values, at.values)} ({law})" for law, at in of_state.items()]
-        if places:
-            texts.append(f"{state}: {'; '.join(places)}")
-    return texts
-
-
-def count_rounding(values: Mapping[tuple[str, str], xarray.DataArray]) -> list[str]:
-    """Say for each state at how many of the judged values of a its last digit decides, see `describe_rounding`."""
-    texts = []
-    for state in dict.fromkeys(name for name, _ in values):
-        counts = [(int(differs.sum()), law) for (name, law), differs in values.items() if name == state]
-        first = format_count(counts[0][0], "value") + " of a"
-        words = [f"{count if number else first} ({law})" for number, (count, law) in enumerate(counts)]
-        texts.append(f"some states that round to {state} reach another attractor at {join_words(words)}")
-    return texts

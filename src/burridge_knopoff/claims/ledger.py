@@ -13,13 +13,13 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.claims.claim import Claim
-from burridge_knopoff.claims.conventions import count_rounding, describe_rounding, rounded_state_changes
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.formats import as_csv, as_json, as_markdown
 from burridge_knopoff.claims.margins import changing_choices
 from burridge_knopoff.claims.other_tolerances import other_tolerances
 from burridge_knopoff.claims.paper import CLAIMS
 from burridge_knopoff.claims.range import Range
+from burridge_knopoff.claims.rounding import count_rounding, describe_rounding, rounded_state_changes
 from burridge_knopoff.claims.verdict import (
     NOT_TESTABLE,
     OPEN,

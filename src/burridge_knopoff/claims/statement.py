@@ -112,9 +112,9 @@ class Statement:
     def __str__(self) -> str:
         return format_shares(self.shares)
 
-    def at(self, where: str) -> str:
+    def at(self, a: Range) -> str:
         """Return at which values of a it is true, see `at_values`."""
-        return at_values(self.shares, where)
+        return at_values(self.shares, a)
 
     @property
     def shares(self) -> Mapping[str, Share]:
@@ -197,7 +197,7 @@ def for_all(
         shares = {case.name: case.share for case in known}
         verdict, numbers = judge_shares(shares, loose)
         is_about_all = known and all(case.share.count == len(case.a) for case in known)
-        return verdict, at_values(shares, "") if is_about_all else numbers
+        return verdict, at_values(shares) if is_about_all else numbers
 
     cases = list(truth(Runs(evidence, initial, a)).cases(unknown))
     return decided(Statement(evidence, cases, loose, under if reached else None))

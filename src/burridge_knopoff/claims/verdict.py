@@ -139,18 +139,19 @@ def format_shares(shares: Mapping[str, Share]) -> str:
     return join_words([f"{share} ({name})" for name, share in shares.items()])
 
 
-def at_values(shares: Mapping[str, Share] | Share, where: str) -> str:
-    """Return at which values of a a statement is true: «at every value of a with a > 0.1, under both laws».
+def at_values(shares: Mapping[str, Share] | Share, a: object = "") -> str:
+    """Return at which values of a a statement is true: «at all 80 values of a with a > 0.1, under both laws».
 
-    shares : by the name of their case, or one alone; where : which values are judged
+    shares : of the judged values, by the name of their case, or one alone; a : range of these values, in words
     """
     shares = {"": shares} if isinstance(shares, Share) else shares
-    fractions = {share.value for share in shares.values()}
-    where = f" {where}" if where else ""
-    if fractions not in ({0.0}, {1.0}) or min(share.count for share in shares.values()) < FEW:
+    with_a = f" with {a}" if a else ""
+    counts, fractions = ({getattr(share, name) for share in shares.values()} for name in ("count", "value"))
+    if fractions not in ({0.0}, {1.0}) or len(counts) > 1 or min(counts) < FEW:
         numbers = format_shares(shares) if "" not in shares else str(shares[""])
-        return f"at {numbers} of the values of a{where}"
-    return f"at {'every' if 1.0 in fractions else 'no'} value of a{where}{_cases_in_words([*shares])}"
+        return f"at {numbers} of the values of a{with_a}"
+    values = f"all {counts.pop()}" if 1.0 in fractions else f"none of the {counts.pop()}"
+    return f"at {values} values of a{with_a}{_cases_in_words([*shares])}"
 
 
 def _cases_in_words(names: Sequence[str]) -> str:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import argparse
 
-DESCRIPTION = """List the points and catalogues of studies that are missing, corrupt, outdated or failed, corrupt
-summaries, missing files of jobs that have started, and files that do not belong to the study. Exit code 0: no problems;
-1: files are missing, corrupt or outdated; 3: runs have failed, without other problems."""
+DESCRIPTION = """List the points and catalogues of studies that are missing, corrupt, outdated or failed, summaries
+that are corrupt, missing files of jobs that have started, and files that do not belong to the study. Exit code 0: no
+problems; 1: files are missing, corrupt or outdated; 3: runs have failed, without other problems."""
 
 EXAMPLES = """  bk check results/paper
   bk check --paths results/*/

@@ -43,7 +43,8 @@ def draw(bifurcation: xarray.Dataset) -> Figure:
     for number, panel in enumerate(panels):
         law, state = laws[number // len(initial)], initial[number % len(initial)]
         upward, downward = (section_points(bifurcation, law, state, direction) for direction in (1, -1))
-        for a, velocity in (last_points(*upward), last_points(*downward)):
+        last_upward, last_downward = last_points(*upward), last_points(*downward)
+        for a, velocity in (last_upward, last_downward):
             real = np.abs(velocity) > ROUNDING
             a, velocity = a[real], velocity[real]
             is_cloud = np.isin(a, dense_values(a, velocity)) if len(grid) > FEW else np.zeros(len(a), dtype=bool)
@@ -53,7 +54,7 @@ def draw(bifurcation: xarray.Dataset) -> Figure:
                 panel.plot(a[chosen], velocity[chosen], ".", **look)
         show_all(panel, grid)
         panel.axhline(0.0, color="0.6", linewidth=0.5, zorder=0)
-        if not (np.abs(last_points(*upward)[1]) > ROUNDING).any():
+        if not (np.abs(last_upward[1]) > ROUNDING).any():
             # In uniform sliding, only rounding crosses the section.
             say(panel, STAYS if upward[0].size else NEVER_UPWARD)
         titles.append(f"{state}, {law} law")

@@ -106,7 +106,7 @@ def periodic_for_one_block(evidence: Evidence, *, a: Range = POSITIVE, loose_sha
             where = chaos.any([dimension for dimension in chaos.dims if dimension != "a"])
             measured.append(Measured(f"smallest a with chaos of {name}", float(chaos["a"][where][0])))
     reason = (
-        f"One block sticks and slips periodically under both laws {at_values(periodic.share, f'with {a}')}; "
+        f"One block sticks and slips periodically under both laws {at_values(periodic.share, a)}; "
         f"{chaotic or 'no'} motions of two or three blocks are chaotic there."
     )
     verdict = periodic.verdict if chaotic else FAILS

@@ -69,7 +69,7 @@ def history_decides(
         if len(fraction):
             measured += extremes("basin fraction of synchrony", fraction, law)
         single += describe_where("at most one kind of motion", slots["a"].values, kinds <= 1, law)
-    reason = f"Attractors of more than one kind are reached {at_values(shares, f'with {a}')}."
+    reason = f"Attractors of more than one kind are reached {at_values(shares, a)}."
     return Verdict(judge_worst_share(shares, loose_share), reason, measured, "; ".join(single))
 
 
@@ -115,7 +115,7 @@ def first_block_decides(
     unknown = f"too few runs under the {{law}} law completed at {a}"
     share = for_all(evidence, initial, a, loose_share, truth, unknown, truth)
     return share.conclude(
-        f"One of {initial[0]} and {initial[1]} synchronizes and the other does not {share.at(f'with {a}')}.",
+        f"One of {initial[0]} and {initial[1]} synchronizes and the other does not {share.at(a)}.",
         share.measured("share of a at which the outcome differs"),
         "the outcome is the same",
     )
@@ -144,7 +144,7 @@ def same_for_both_laws(
     unknown = f"too few runs from {{initial}} completed at {a}"
     share = for_all(evidence, initial, a, loose_share, truth, unknown, truth)
     return share.conclude(
-        f"Both laws have the same outcome, synchrony or no synchrony, {share.at(f'with {a}')}.",
+        f"Both laws have the same outcome, synchrony or no synchrony, {share.at(a)}.",
         share.measured("share of a with the same outcome"),
         "the outcomes differ",
     )
@@ -250,7 +250,7 @@ def phases_decide(
         readings[where] = outcomes.verdict
         changes.append(
             f"with {where} (A = {outcomes.amplitudes}) the claim {outcomes.verdict}, since it is true "
-            f"{at_values(outcomes.shares, f'with {a}')}: {outcomes.format_fractions()}"
+            f"{at_values(outcomes.shares, a)}: {outcomes.format_fractions()}"
         )
         measured += outcomes.measured(where, outcomes.without_backward_slip)
     synchronized, antiphase = (
@@ -262,7 +262,7 @@ def phases_decide(
         f"The end blocks oscillate about uniform sliding with amplitudes at which no block slips backward (A = "
         f"{judged.amplitudes}), {_format_inner_block(inner_share)}. Phases within {close:g}° lead to synchrony "
         f"({synchronized}) and opposite phases to antiphase ({antiphase}) "
-        f"{at_values(judged.shares, f'with {a}')}."
+        f"{at_values(judged.shares, a)}."
     )
     return combine_readings(readings, reason, measured, changes)
 

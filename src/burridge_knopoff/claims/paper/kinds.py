@@ -68,7 +68,7 @@ def _all_of_kind(
         if known.any():
             of_all = float(np.isin(merge_chaos(attractors["kind"].values), allowed)[known].mean())
             measured.append(Measured(f"share of all attractors with {what} motion", of_all))
-    reason = f"The motion is {what} {share.at(f'with {a}')}."
+    reason = f"The motion is {what} {share.at(a)}."
     # Periodic and quasiperiodic together are regular motion, however the two are divided.
     if ("periodic" in kinds) != ("quasiperiodic" in kinds):
         longest = evidence.config["motion"]["longest_period"]
@@ -163,8 +163,8 @@ def periodic_is_synchronized(
         raise NotTestableError(f"no run from {initial} is periodic with {synchrony}")
     wider = Statement(evidence, list(truth(Runs(evidence, [initial], a)).cases()), loose_share)
     reason = (
-        f"The periodic motion from {initial} is synchronized {share.at(f'with {synchrony}')}, where "
-        f"the paper finds synchrony, and {wider.at(f'with {a}')}."
+        f"The periodic motion from {initial} is synchronized {share.at(synchrony)}, where "
+        f"the paper finds synchrony, and {wider.at(a)}."
     )
     measured = share.measured(f"share of a with {synchrony} at which it is synchronized")
     measured += wider.measured(f"share of a with {a} at which it is synchronized")
@@ -270,7 +270,7 @@ def plus_largest_exponent(
         Measured(f"largest in modulus, at a = {exponent['a'].values[largest]:g}", value, spread),
     ]
     return share.conclude(
-        f"The largest exponent from {initial} ({law}) is 0 within its error {at_values(share.share, f'with {a}')}.",
+        f"The largest exponent from {initial} ({law}) is 0 within its error {at_values(share.share, a)}.",
         measured,
         "not 0",
         "exponent not known",

@@ -117,7 +117,7 @@ def branch_locked(
         reading: worst_verdict(judge_share(share, loose_share) for share in of_branch.values())
         for reading, of_branch in shares.items()
     }
-    kept, locked = (at_values(shares[reading], f"with {a}") for reading in (ONE_FREQUENCY, NO_MODE))
+    kept, locked = (at_values(shares[reading], a) for reading in (ONE_FREQUENCY, NO_MODE))
     reason = (
         f"With {100 * detuning:g} % more mass on one of them, the end blocks keep one frequency, and a perturbation of "
         f"their relative phase decays (the third Lyapunov exponent is negative), {kept} "

@@ -109,7 +109,7 @@ def not_differentiable_at_events(evidence: Evidence, *, a: Range = POSITIVE, loo
     reason = (
         f"Among the events that are stored with states, U'' jumps at every stop, by at least "
         f"{smallest['stop_jump']:.2g}, and U''' at every start, by at least {smallest['start_jump']:.2g}, "
-        f"{share.at(f'with {a}')}. U'' is continuous at a start."
+        f"{share.at(a)}. U'' is continuous at a start."
     )
     return share.conclude(reason, measured, "no jump at some event")
 

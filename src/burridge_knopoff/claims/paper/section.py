@@ -48,7 +48,7 @@ def minus_one_section_point(
     share = for_all(evidence, [initial], a, loose_share, truth, unknown)
     return share.conclude(
         f"The section of runs from {initial} ({law}) is one point "
-        f"{at_values(share.share, f'with {a}')} at which the motion has settled.",
+        f"{at_values(share.share, a)} at which the motion has settled.",
         [Measured("share of a with one section point", share.share.value)],
         "more than one point",
         "not settled",
@@ -90,7 +90,7 @@ def plus_cloud(
     ]
     return share.conclude(
         f"From {second} ({law}) the section is a cloud at lower velocities than from {first} "
-        f"{at_values(share.share, f'with {a}')}.",
+        f"{at_values(share.share, a)}.",
         measured,
         "no lower cloud",
         further=describe_where("no point at all", cloud["a"].values, cloud["count"].values == 0),
@@ -176,7 +176,7 @@ def plus_line_disappears(
     share = for_all(evidence, initial, a, loose_share, truth, NOT_COMPLETED, reached)
     return share.conclude(
         f"From {second} ({law}) no section point lies within {100.0 * near:g} % of the line from {first} "
-        f"{at_values(share.share, f'with {a}')}.",
+        f"{at_values(share.share, a)}.",
         [Measured("share of a without a point on the line", share.share.value)],
         "on the line",
     )

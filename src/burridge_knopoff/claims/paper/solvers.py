@@ -73,7 +73,7 @@ def solutions_agree(
     verdict = judge_worst_share(shares, loose_share)
     reason = (
         f"The solvers of each law agree on ⟨J⟩ at {sum(solved)} of {len(solved)} points (initial state, a), and the "
-        f"laws have the same result (synchrony, other regular motion or chaos) {laws.at(f'with {a}')}."
+        f"laws have the same result (synchrony, other regular motion or chaos) {laws.at(a)}."
     )
     numbers = [Measured(f"share with agreement of the {name}", share.value) for name, share in shares.items()]
     return judge_conventions(evidence, verdict, reason, [*numbers, *measured], differences, judge_attractors)

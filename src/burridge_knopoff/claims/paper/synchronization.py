@@ -55,7 +55,7 @@ def _synchronizes(evidence: Evidence, initial: str, a: Range, loose_share: float
 
     verb = "synchronize" if synchronized else "do not synchronize"
     return share.conclude(
-        f"From {initial} the end blocks {verb} {share.at(f'with {a}')}.",
+        f"From {initial} the end blocks {verb} {share.at(a)}.",
         share.measured(f"share of a with {claimed}", extreme),
         otherwise,
     )
