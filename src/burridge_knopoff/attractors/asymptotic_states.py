@@ -27,7 +27,7 @@ from burridge_knopoff.motion.mirror import pair_distances, symmetrized
 from burridge_knopoff.motion.observables import SteadyMotion
 from burridge_knopoff.motion.section_returns import state_of
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
-from burridge_knopoff.periodic_orbits.floquet import multipliers
+from burridge_knopoff.periodic_orbits.floquet import unstable_count
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.settings import Settings
@@ -134,7 +134,7 @@ def _slow_synchrony(model: Model, end: ChainState, settings: SearchSettings, mot
         orbit = limit_cycle(model, symmetric)
     except OrbitError:
         return AsymptoticState()
-    if orbit.symmetry != Symmetry.SYNCHRONIZED or multipliers(orbit).unstable_count:
+    if orbit.symmetry != Symmetry.SYNCHRONIZED or unstable_count(orbit) != 0:
         return AsymptoticState()
     steady_motion = Classifier(model, settings.transient, settings.window, motion).measure(symmetric)
     return _from_motion(steady_motion) if steady_motion is not None else AsymptoticState()

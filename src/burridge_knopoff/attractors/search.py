@@ -316,9 +316,10 @@ class Search(Convergence):
         """
         try:
             orbit = synchronized_orbit(self.model)
+            leading = abs(multipliers(orbit).whole[0])
         except OrbitError:
             return
-        if abs(multipliers(orbit).whole[0]) >= 1.0:
+        if leading >= 1.0:
             return
         exact = self.classifier(self.settings.transient, self.settings.window).measure(orbit.reference)
         if exact is None:

@@ -34,7 +34,7 @@ from burridge_knopoff.motion.limit_cycle import orbit_of_events
 from burridge_knopoff.motion.section_returns import Returns, returns_of
 from burridge_knopoff.motion.set_distance import SPACINGS, is_near
 from burridge_knopoff.motion.settings import EXPONENTS, MOTION
-from burridge_knopoff.periodic_orbits.floquet import multipliers
+from burridge_knopoff.periodic_orbits.floquet import multipliers, unstable_count
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
@@ -215,10 +215,7 @@ def _settle(track: EdgeTrack, duration: float) -> PeriodicOrbit | None:
     """Follow the boundary until it leads to a saddle orbit, and return the orbit; None if it leads to none in time."""
 
     def accepted(orbit: PeriodicOrbit, first: float, last: float, _: float) -> bool:
-        return (
-            last <= max(CLOSE_FACTOR * SEPARATED_DISTANCE, first / CLOSE_FACTOR)
-            and multipliers(orbit).unstable_count == 1
-        )
+        return last <= max(CLOSE_FACTOR * SEPARATED_DISTANCE, first / CLOSE_FACTOR) and unstable_count(orbit) == 1
 
     part = duration / FIRST_PART
     while part <= duration:

@@ -25,6 +25,7 @@ from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.labels import UNDETERMINED, label_arrays
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.periodic_orbits.flow import OrbitError, mean_distance
+from burridge_knopoff.running.derivative import missing_derivative
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 
@@ -255,6 +256,8 @@ class EdgeTrack:
             self.first, self.second = runner.state(), other.state()
             distance, steps = self._distance(self.first, self.second), steps + 1
             if steps == ORTHONORMALIZED or distance >= SEPARATED_DISTANCE:
+                if reason := missing_derivative(runner):
+                    raise OrbitError(f"a = {self.model.a:.12g}: on the boundary {reason}: no exponents")
                 self._basis, triangle = np.linalg.qr(runner.perturbations)
                 runner.carry(self._basis)
                 size = np.abs(np.diag(triangle))

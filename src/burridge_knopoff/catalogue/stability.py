@@ -12,6 +12,7 @@ from burridge_knopoff.kernel._core import Catalogue, Exponents
 from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Whole
+from burridge_knopoff.running.derivative import missing_derivative
 from burridge_knopoff.running.runner import Runner, check_state
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import instance_of
@@ -68,7 +69,9 @@ def event_exponents(
     Under quasi-static loading N blocks have at most N − 1 finite exponents: the state at the start of an event has N
     positions, one of which is fixed by the threshold, and those of blocks that creep by the others.
 
-    Raises ValueError, one line, as `record_events` does, and for more exponents than perturbations.
+    Raises ValueError, one line, as `record_events` does, for more exponents than perturbations, and where perturbations
+    have no linear growth. This is so if several blocks start together under quasi-static loading, as from a
+    mirror-symmetric or uniform state, and if blocks that a dashpot joins stop or start at one instant.
 
     Reference: G. Benettin, L. Galgani, A. Giorgilli and J.-M. Strelcyn, Meccanica 15 (1980) 9-30.
 
@@ -97,6 +100,7 @@ def event_exponents(
     runner = Runner(model, exponents=exponents, catalogue=catalogue, loading=loading, groups=False)
     runner.begin(start)
     status = runner.run(edges[-1])
+    _check_derivative(runner)
     time, growth = catalogue.take()["time"], exponents.results()["growth"]
     # A single time of rest bounds no event.
     events, batches = len(time) if len(rests) != 1 else 0, len(growth)
@@ -108,6 +112,11 @@ def event_exponents(
         error = np.sqrt(np.divide(batches, batches - 1) * np.sum(scatter**2, axis=0)) / events
     order = np.argsort(-mean, kind="stable")
     return EventExponents(mean[order], np.where(np.isneginf(mean), 0.0, error)[order], events, status)
+
+
+def _check_derivative(runner: Runner) -> None:
+    if reason := missing_derivative(runner):
+        raise ValueError(f"start: {reason}, expected a state from which perturbations grow linearly")
 
 
 def _rest_times(model: Model, start: ChainState, edges: np.ndarray) -> np.ndarray:
@@ -139,8 +148,8 @@ def event_multipliers(model: Model, start: ChainState, end: float, *, loading: s
     The multipliers are the eigenvalues of the linear map of displacements of the blocks by the events. Under
     quasi-static loading one of them is 0, since the threshold fixes one displacement.
 
-    Raises ValueError, one line, as `record_events` does, if a block slips at the start or at the end, and if
-    perturbations overflow.
+    Raises ValueError, one line, as `record_events` does, if a block slips at the start or at the end, if perturbations
+    overflow, and where they have no linear growth, as `event_exponents` does.
 
     >>> from burridge_knopoff import Chain, InitialState, Model, event_multipliers, law_of
     >>> model = Model(Chain(1, pulling=1), law_of("carlson_langer", 0.0, {"sigma": 0.2}), v=1.0)
@@ -166,6 +175,7 @@ def event_multipliers(model: Model, start: ChainState, end: float, *, loading: s
     status = runner.run(end)
     if status != Status.COMPLETED or not runner.state().stuck.all():
         raise refusal("end", end, "a time at which all blocks stick")
+    _check_derivative(runner)
     product = runner.perturbations[:blocks]
     if not np.isfinite(product).all():
         raise refusal("end", end, "a time before perturbations overflow")

@@ -7,6 +7,7 @@ import argparse
 from burridge_knopoff.cli.options import add_model, add_settings, add_state, model_line, model_of, settings_of, state_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MotionSettings
+from burridge_knopoff.running.derivative import none_because
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import EXIT_CODE
 from burridge_knopoff.study.formatting import to_ascii, with_error
@@ -35,6 +36,7 @@ def run(options: argparse.Namespace) -> int:
     from burridge_knopoff.dataset.point import write_point
     from burridge_knopoff.motion.chain_synchronization import ALIGNMENT, transverse_exponent, window_range
     from burridge_knopoff.motion.kind import format_motion, motion_of_run
+    from burridge_knopoff.periodic_orbits.flow import OrbitError
     from burridge_knopoff.running import simulation
     from burridge_knopoff.summaries.text_table import table
 
@@ -45,6 +47,8 @@ def run(options: argparse.Namespace) -> int:
         window_range(model.chain).form(options.window, "window")
     trajectory = simulation.run(model, state, settings_of(Settings, options))
     print(f"{model_line(model)}, from {state.name}: {trajectory.status} at tau = {trajectory.end_time:g}\n")
+    if trajectory.missing_derivative:
+        print(f"exponents: {none_because(trajectory.missing_derivative)}\n")
     exponents = zip(trajectory.lyapunov_exponent, trajectory.lyapunov_error, strict=True)
     rows = [(str(k), f"{value:z.6f}", f"{error:.6f}") for k, (value, error) in enumerate(exponents, 1)]
     print("\n".join(table(("", "Lyapunov exponent", "error"), rows)))
@@ -58,10 +62,12 @@ def run(options: argparse.Namespace) -> int:
     print(f"<J> = {to_ascii(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}")
     if model.chain.is_mirror_symmetric:
         start = model.begin(state, options.start)
-        value, error = transverse_exponent(
-            model, start, max(options.transient, ALIGNMENT * model.chain.own_units.time), options.window
-        )
-        print(f"transverse exponent of the nearby symmetric motion: {to_ascii(with_error(value, error))}")
+        alignment = max(options.transient, ALIGNMENT * model.chain.own_units.time)
+        try:
+            words = to_ascii(with_error(*transverse_exponent(model, start, alignment, options.window)))
+        except OrbitError as error:
+            words = f"none: {error}"
+        print(f"transverse exponent of the nearby symmetric motion: {words}")
     if options.out:
         write_point(trajectory, options.out)
         print(f"written: {options.out}")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from burridge_knopoff.cli.options import add_model, add_settings, add_state, model_of, settings_of, state_of
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.running.derivative import none_because
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import EXIT_CODE
 from burridge_knopoff.study.formatting import to_ascii, with_error
@@ -82,4 +83,6 @@ def outcome(trajectory: Trajectory) -> str:
     for exponent, error in zip(trajectory.lyapunov_exponent[:1], trajectory.lyapunov_error[:1], strict=True):
         if not math.isnan(error):
             words += f", largest Lyapunov exponent {to_ascii(with_error(float(exponent), float(error)))}"
+    if trajectory.missing_derivative:
+        words += f", Lyapunov exponents: {none_because(trajectory.missing_derivative)}"
     return f"{words}, {trajectory.event_count} stops and starts until tau = {trajectory.end_time:g}"

@@ -145,6 +145,8 @@ def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
     }
     if attributes["solver"] == "rk4":
         attributes["step"] = settings.step
+    if trajectory.missing_derivative:
+        attributes["missing_derivative"] = trajectory.missing_derivative
     return global_attributes(title, attributes, module=__name__, contents=contents)
 
 

@@ -172,6 +172,20 @@ class Exponents:
         growth (batches, vectors), -inf for dropped vectors, duration (batches,), and the number of exponents -inf.
         """
 
+    @property
+    def unordered(self) -> tuple[int, int]:
+        """
+        The first two blocks, from 0, whose changes at one instant have an order that matters; -1 for none.
+        """
+
+    @property
+    def unordered_mirrors(self) -> tuple[int, int]:
+        """The same, for mirror blocks."""
+
+    @property
+    def tied(self) -> tuple[int, int]:
+        """The first two blocks that start together under quasi-static loading."""
+
 class Catalogue:
     """Slip events of a run: slips that are connected in space and time."""
 

@@ -5,9 +5,20 @@
 // perturbations one after the other. Lost vectors are dropped, and the growth of the others is summed in batches. A
 // batch begins and ends with the first orthonormalisation after its edge.
 //
-// Reference: G. Benettin, L. Galgani, A. Giorgilli and J.-M. Strelcyn, Meccanica 15 (1980) 9-30.
+// Where several blocks stop or start at one instant, the derivative of the flow may depend on the order in which a
+// perturbation lets them do so; the flow then has directional derivatives only. Two changes commute at first order unless
+// a dashpot joins their blocks and one of them starts with a drop of friction: at once the dashpot changes the rate of
+// the force on the other. Under quasi-static loading the order always matters: the driver stops at the first start.
+// `Exponents` maps perturbations in one order, and reports the blocks for which it matters.
+//
+// References: G. Benettin, L. Galgani, A. Giorgilli and J.-M. Strelcyn, Meccanica 15 (1980) 9-30; S. A. Burden,
+// S. S. Sastry, D. E. Koditschek and S. Revzen, SIAM J. Appl. Dyn. Syst. 15 (2016) 1227.
 #pragma once
 
+#include <algorithm>
+#include <utility>
+
+#include "record.h"
 #include "tangent.h"
 
 namespace bk {
@@ -45,12 +56,18 @@ class Exponents {
     std::vector<double> growth, duration;
     const bool at_rest;
     const double start_time;
+    // The first two blocks whose changes at one instant have an order that matters, apart from mirror blocks; the first
+    // two mirror blocks; and the first two that start together under quasi-static loading. −1 for none.
+    std::pair<int, int> unordered{-1, -1}, unordered_mirrors{-1, -1}, tied{-1, -1};
+    // Changes closer than this time are simultaneous: rounding decides their order.
+    double rounding = 0.0;
 
     Exponents(int blocks, int vectors, double start_time, std::vector<double> edges, bool at_rest)
         : tangent((blocks + LANES - 1) / LANES, vectors), in_group(1, vectors), blocks(blocks),
           growth((edges.size() - 1) * vectors), duration(edges.size() - 1), at_rest(at_rest),
           start_time(vectors > 0 ? start_time : NEVER), edge(std::move(edges)), batches(int(edge.size()) - 1),
-          whole(vectors), product(vectors, 1.0), deceleration(blocks), lost_speed(size_t(vectors) * blocks) {}
+          whole(vectors), product(vectors, 1.0), deceleration(blocks), lost_speed(size_t(vectors) * blocks),
+          latest(blocks) {}
 
     double *x(int v) { return &tangent.position.lane(size_t(v) * tangent.columns * LANES); }
     double *u(int v) { return &tangent.velocity.lane(size_t(v) * tangent.columns * LANES); }
@@ -61,17 +78,39 @@ class Exponents {
     // Propagate perturbations from now on without orthonormalisation.
     void carry() {
         forget_stops();
+        latest.assign(blocks, {});
+        unordered = unordered_mirrors = tied = {-1, -1};
         running = true;
         due = NEVER;
         most_stuck = blocks;
     }
 
-    // Map the perturbations through the stop or start that block i, in a lane of a state, is about to make.
-    void change(State<Blocks> &state, const Springs &springs, int i, int lane) {
+    // Record that block i stops, or starts with a drop of friction, and with which neighbours it does so at one instant.
+    void meet(const Springs &springs, int i, bool starts, const Clock &at) {
+        if (!running || !springs.damped) return;
+        for (int64_t k = springs.start[i]; k < springs.start[i + 1]; k++) {
+            const int j = springs.neighbour[k];
+            const Change &other = latest[j];
+            if (springs.damping[k] == 0.0 || !(starts || other.starts) || other.at.until(at) > rounding) continue;
+            auto &pair = i + j == blocks - 1 ? unordered_mirrors : unordered;
+            if (pair.first < 0) pair = std::minmax(i, j);
+        }
+        latest[i] = {at, starts};
+    }
+
+    // Record that two blocks start together under quasi-static loading.
+    void tie(int i, int j) {
+        if (tied.first < 0) tied = std::minmax(i, j);
+    }
+
+    // Map the perturbations through the stop or start that block i, in a lane of a state, is about to make now.
+    void change(State<Blocks> &state, const Springs &springs, int i, int lane, const Clock &now) {
         const Blocks &layout = state.layout;
+        const bool starts = state.slip.lane(lane) == 0.0;
+        if (layout.drops) meet(springs, i, starts, now);
         const int c = lane / LANES, own = lane % LANES;
         const Blocks::vec force = state.force(c);
-        if (state.slip.lane(lane) != 0.0) {
+        if (!starts) {
             deceleration[i] = state.slip_acceleration(c, force)[own];
             stopped.push_back(i);
             for (int v = 0; v < tangent.vectors; v++) {
@@ -203,6 +242,8 @@ class Exponents {
     //     x_j → x_j + (1 − creep_j) δs_i/rate.
     void load_until_start(const Springs &springs, int i, const double *creep, double rate) {
         forget_stops();
+        // The slip clock has not advanced since the last stop, but the driver has.
+        if (springs.damped) latest.assign(blocks, {});
         for (int v = 0; v < tangent.vectors; v++) {
             const double less = springs.pull(x(v), i) / rate;
             for (int j = 0; j < blocks; j++) x(v)[j] += less * (1.0 - creep[j]);
@@ -231,6 +272,12 @@ class Exponents {
     double due = 0.0, batch_start = 0.0;
     // Products of lengths, whose logarithm is taken at the end of a batch, or before it could overflow.
     std::vector<double> whole, product;
+    // The latest stop or start of a block.
+    struct Change {
+        Clock at{-NEVER, 0.0};
+        bool starts = false;
+    };
+    std::vector<Change> latest;
     // Of blocks that have stopped at this instant: their accelerations and velocity perturbations before.
     std::vector<double> deceleration, lost_speed;
     std::vector<int> stopped;

@@ -25,6 +25,11 @@ void Run::load_exponents() {
     std::vector<double> creep(blocks);
     for (int i = 0; i < blocks; i++) creep[i] = alone[i].creep;
     const int first = *std::min_element(starting.begin(), starting.end());
+    for (int i : starting)
+        if (i != first) exponents.tie(first, i);
+    drop_void(waiting);
+    if (!waiting.empty() && load.until(waiting.top().at) <= rounding_of_starts(loading))
+        exponents.tie(first, waiting.top().number);
     exponents.load_until_start(model.springs, first, creep.data(), creep_rate(first));
 }
 

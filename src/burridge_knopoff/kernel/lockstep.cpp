@@ -164,8 +164,11 @@ void Lockstep::load_section() {
 
 // Stop or start a block now in some lanes, and store the events.
 void Lockstep::change(int i, mask where) {
-    if (vectors > 0) tangent.change(state, i, where);
     const int starts = bits(state.slip[i] == vec{}), which = bits(where);
+    for (int lane = 0; vectors > 0 && layout.drops && which >> lane; lane++)
+        if (which >> lane & 1)
+            own[lane]->exponents.meet(own[lane]->model.springs, i, starts >> lane & 1, clock_of(lane));
+    if (vectors > 0) tangent.change(state, i, where);
     state.transition(i, where);
     for (int lane = 0; which >> lane; lane++) {
         if (!(which >> lane & 1)) continue;

@@ -333,7 +333,11 @@ NB_MODULE(_core, m) {
                 return made;
             },
             "growth (batches, vectors), -inf for dropped vectors, duration (batches,), and the number of exponents "
-            "-inf.");
+            "-inf.")
+        .def_ro("unordered", &Exponents::unordered,
+                "The first two blocks, from 0, whose changes at one instant have an order that matters; -1 for none.")
+        .def_ro("unordered_mirrors", &Exponents::unordered_mirrors, "The same, for mirror blocks.")
+        .def_ro("tied", &Exponents::tied, "The first two blocks that start together under quasi-static loading.");
 
     nb::class_<Catalogue>(m, "Catalogue", "Slip events of a run: slips that are connected in space and time.")
         .def(nb::init<int, double, bool, double>(), "blocks"_a, "begin"_a, "profiles"_a, "most"_a)

@@ -193,7 +193,7 @@ bool Run::plan(Group &group) {
 void Run::change(Group &group, int lane, const Clock &at) {
     const int i = group.layout.member[lane];
     group.resting = false;
-    if (exponents.tangent.vectors > 0) exponents.change(group.state, model.springs, i, lane);
+    if (exponents.tangent.vectors > 0) exponents.change(group.state, model.springs, i, lane, at);
     const int kind = group.state.slip.lane(lane) == 0.0;
     group.state.transition(lane / LANES, Blocks::from_bits(1 << lane % LANES));
     if (!directions.empty()) {
@@ -376,6 +376,9 @@ bool Run::load_next(Group &group) {
     if (exponents.running) {
         int first = 0;
         while (left.lane(first) != least) first++;
+        const double rounding = rounding_of_starts(loading);
+        for (int i = 0; i < blocks; i++)
+            if (i != first && left.lane(i) - least <= rounding) exponents.tie(first, i);
         exponents.load_until_start(model.springs, first, &creep.lane(0), rate.lane(first));
     }
     change_due(group, now);

@@ -107,6 +107,7 @@ class Run {
         log.unit = model.springs.unit;
         exponents.interval = loading > 0.0 ? 0.0 : follow_unit();
         exponents.unit = model.springs.unit;
+        exponents.rounding = rounding_of_starts(model.v);
     }
 
     Run(const Run &) = delete;
@@ -135,6 +136,13 @@ class Run {
     double follow_unit() const {
         const Springs &springs = model.springs;
         return springs.damping_rate * springs.unit > DECAY ? DECAY / springs.damping_rate : springs.unit;
+    }
+
+    // Time in which a driver of a given speed changes the forces on blocks by their rounding.
+    double rounding_of_starts(double speed) const {
+        const auto largest = [](const std::vector<double> &of) { return *std::max_element(of.begin(), of.end()); };
+        const double rate = speed * largest(model.springs.driving);
+        return AT_THRESHOLD * (model.springs.unit + (rate > 0.0 ? largest(model.springs.threshold) / rate : 0.0));
     }
 
     // The loading clock at a time of the slip clock. Under steady loading the two are the same.

@@ -22,6 +22,8 @@ from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
 from burridge_knopoff.motion.chain_settings import SAMPLE, WATCH, Sample, Watch
 from burridge_knopoff.motion.mirror import pair_distances, symmetrized
+from burridge_knopoff.periodic_orbits.flow import OrbitError
+from burridge_knopoff.running.derivative import missing_derivative
 from burridge_knopoff.running.runner import Runner, check_state
 from burridge_knopoff.running.settings import DURATION, LONGEST, Settings
 from burridge_knopoff.running.simulation import run
@@ -108,7 +110,7 @@ def watch_state(runner: Runner, start: ChainState, watch: Watch = WATCH) -> Fate
         history.append(distances)
         nearest = float(distances.max())
         if nearest <= watch.synchronization_distance:
-            exponent, _ = transverse_exponent(model, state, *_times(model, watch))
+            exponent, _ = _exponent(model, state, *_times(model, watch))
             outcome = Outcome.SYNCHRONIZED if exponent < 0.0 else Outcome.UNDETERMINED
             return Fate(outcome, check * INTERVAL, nearest, nearest, len(distances), exponent)
     quarter = len(history) // 4
@@ -116,7 +118,7 @@ def watch_state(runner: Runner, start: ChainState, watch: Watch = WATCH) -> Fate
     undetermined = last.max() < DECREASE * before.max()
     exponent = math.nan
     if last.max() < NEAR_SYMMETRY * model.scale:
-        exponent, error = transverse_exponent(model, runner.state(), *_times(model, watch))
+        exponent, error = _exponent(model, runner.state(), *_times(model, watch))
         undetermined |= not exponent > STANDARD_ERRORS * error
     return Fate(
         Outcome.UNDETERMINED if undetermined else Outcome.NOT_SYNCHRONIZED,
@@ -135,7 +137,8 @@ def transverse_exponent(
     The state is made symmetric, and an antisymmetric perturbation is propagated exactly (see `kernel/tangent.h`). The
     exponent is its mean growth rate over the window, which begins after the alignment time. If it is negative, mirror
     blocks that are close to each other synchronize. It is NaN if the run fails, and −∞ if the perturbation vanishes.
-    Raises ValueError if the chain is not its own mirror image, and for times that are not allowed.
+    Raises ValueError if the chain is not its own mirror image and for times that are not allowed. Raises OrbitError, a
+    ValueError, where perturbations have no linear growth (see `multipliers`).
 
     The error combines the standard error of BATCHES equal batches and the effect of the phases at which the window
     begins and ends. If a batch lasts about a whole number of periods, this effect is the same in all batches and does
@@ -178,6 +181,8 @@ def transverse_exponent(
         if after is None:
             return math.nan, math.nan
         # Rounding errors grow if the symmetric motion is unstable; they are removed before they matter.
+        if reason := missing_derivative(runner, mirror_symmetric=True):
+            raise OrbitError(f"state: {reason}, expected a state from which perturbations grow linearly")
         state = symmetrized(after)
         perturbation = _antisymmetric(runner.perturbations / scale)
         if step >= 0:
@@ -186,6 +191,14 @@ def transverse_exponent(
     # The deviation of the growth from its trend depends on the phase; the window has the deviations at both ends.
     by_phase = np.cumsum(growth - growth.mean()).std() * math.sqrt(2.0) / window
     return float(rate.mean()), math.hypot(rate.std(ddof=1) / math.sqrt(BATCHES), by_phase)
+
+
+def _exponent(model: Model, state: ChainState, alignment: float, window: float) -> tuple[float, float]:
+    """Return `transverse_exponent`, and NaN where perturbations have no linear growth."""
+    try:
+        return transverse_exponent(model, state, alignment, window)
+    except OrbitError:
+        return math.nan, math.nan
 
 
 def watch_chain(
@@ -218,7 +231,7 @@ def watch_chain(
                 for name in Fate.__dataclass_fields__:
                     results[name][i, j, k] = getattr(fate, name)
             for k, state in enumerate(initial[: sample.symmetric_samples]):
-                results["symmetric_exponent"][i, j, k], results["symmetric_error"][i, j, k] = transverse_exponent(
+                results["symmetric_exponent"][i, j, k], results["symmetric_error"][i, j, k] = _exponent(
                     model, model.begin(state, sample.start), watch.quarter, _times(model, watch)[1]
                 )
             results["lyapunov_exponent"][i, j], results["lyapunov_error"][i, j] = _lyapunov_exponent(

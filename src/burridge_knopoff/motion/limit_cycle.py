@@ -9,7 +9,7 @@ import numpy as np
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.section_returns import state_of
 from burridge_knopoff.motion.set_distance import distance
-from burridge_knopoff.periodic_orbits.floquet import multipliers
+from burridge_knopoff.periodic_orbits.floquet import unstable_count
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow
 from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit
@@ -126,9 +126,7 @@ def _close_returns(
 def _is_on_orbit(orbit: PeriodicOrbit, first: float, last: float, size: float) -> bool:
     """Return whether a motion stays on an orbit, or approaches it if the orbit attracts."""
     return last <= (
-        CLOSENESS[0]
-        if multipliers(orbit).unstable_count
-        else max(CLOSENESS[0], min(first, MAX_RELATIVE_DISTANCE * size))
+        CLOSENESS[0] if unstable_count(orbit) != 0 else max(CLOSENESS[0], min(first, MAX_RELATIVE_DISTANCE * size))
     )
 
 

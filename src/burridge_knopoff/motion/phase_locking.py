@@ -14,7 +14,7 @@ import numpy as np
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.section_returns import state_of, visit
 from burridge_knopoff.motion.set_distance import distance
-from burridge_knopoff.periodic_orbits.floquet import multipliers
+from burridge_knopoff.periodic_orbits.floquet import unstable_count
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
@@ -60,7 +60,7 @@ def locked_orbit(model: Model, returns: np.ndarray, time: float) -> PeriodicOrbi
         orbit = find_periodic_orbit(model, state_of(returns[-1]), time, Symmetry.ASYMMETRIC)
     except OrbitError:
         return None
-    return orbit if multipliers(orbit).unstable_count == 0 and _is_approaching(returns, orbit) else None
+    return orbit if unstable_count(orbit) == 0 and _is_approaching(returns, orbit) else None
 
 
 def _is_approaching(returns: np.ndarray, orbit: PeriodicOrbit) -> bool:

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from burridge_knopoff.periodic_orbits.flow import rate
+from burridge_knopoff.periodic_orbits.flow import OrbitError, rate
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.return_map import allowed_directions, symmetry_breaking_directions
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
@@ -75,6 +75,9 @@ def multipliers(orbit: PeriodicOrbit) -> Multipliers:
 
     orbit : of any chain; the multiplier 1 of the flow is excluded
 
+    Raises OrbitError, a ValueError, where the return has no derivative but one for each order in which blocks stop and
+    start: blocks that a dashpot joins change at one instant, and friction drops at a start.
+
     Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.4, 7.4 and 10.2.
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, multipliers, simulate
@@ -86,6 +89,7 @@ def multipliers(orbit: PeriodicOrbit) -> Multipliers:
     """
     # In the chain's own units: otherwise positions would outweigh velocities in slow chains.
     nothing = np.zeros(instance_of(orbit, PeriodicOrbit, "orbit").model.blocks, dtype=bool)
+    check_derivative(orbit)
     keeping, breaking = allowed_directions(nothing, orbit.symmetry), symmetry_breaking_directions(nothing)
     if orbit.symmetry != Symmetry.SYNCHRONIZED:
         breaking = breaking[:, :0]
@@ -96,6 +100,20 @@ def multipliers(orbit: PeriodicOrbit) -> Multipliers:
     monodromy = orbit.monodromy * scale / scale[:, None]
     kept, broken = (_sorted(np.linalg.eigvals(basis.T @ monodromy @ basis)) for basis in (across, breaking))
     return Multipliers(kept, broken, power=2 if orbit.symmetry == Symmetry.SYMMETRIC else 1)
+
+
+def check_derivative(orbit: PeriodicOrbit) -> None:
+    """Raise OrbitError if the return of an orbit has no derivative."""
+    if orbit.missing_derivative:
+        raise OrbitError(
+            f"orbit: {orbit.missing_derivative}, expected an orbit whose return has a derivative; the growth of a "
+            f"perturbation depends on its direction: follow a perturbed state"
+        )
+
+
+def unstable_count(orbit: PeriodicOrbit) -> int | None:
+    """Return the number of multipliers outside the unit circle; None where the return has no derivative."""
+    return None if orbit.missing_derivative else multipliers(orbit).unstable_count
 
 
 def _sorted(values: np.ndarray) -> np.ndarray:

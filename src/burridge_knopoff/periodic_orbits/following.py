@@ -13,6 +13,7 @@ from burridge_knopoff.model.ranges import Number, TrueOrFalse, Whole
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.border_collision import approach_grazing, smooth_step, switch_branch
 from burridge_knopoff.periodic_orbits.critical_values import critical_values
+from burridge_knopoff.periodic_orbits.floquet import check_derivative
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form, reduced_orbit
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
@@ -85,8 +86,9 @@ def follow(
     `settings.max_orbits`-th orbit, or at the next one if that one grazes. If the parameter is then still within the
     interval, the rest of the branch has not been followed.
 
-    Raises OrbitError if the continuation cannot start, for example if the orbit is outside the interval, and ValueError
-    for an invalid interval or a name that is not a parameter of the model.
+    Raises OrbitError if the continuation cannot start, for example if the orbit is outside the interval or if its
+    return has no derivative (see `multipliers`). Raises ValueError for an invalid interval or a name that is not a
+    parameter of the model.
 
     Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493 (pseudo-arclength);
     docs/bifurcations.md explains how a branch continues where its orbit grazes.
@@ -104,7 +106,7 @@ def follow(
     (True, 0.0865)
     """
     low, high = interval_ends(interval)
-    instance_of(orbit, PeriodicOrbit, "orbit")
+    check_derivative(instance_of(orbit, PeriodicOrbit, "orbit"))
     instance_of(settings, ContinuationSettings, "settings")
     upward = TrueOrFalse().form(upward, "upward")
     if not callable(is_complete):

@@ -56,6 +56,7 @@ class PeriodicOrbit:
     return_time : the period, or half of it for an orbit that is its own mirror image half a period later
     returned : the state after a return, reflected for an orbit that is its own mirror image half a period later
     monodromy : linearized return of perturbations of the reference state, shape (2 blocks, 2 blocks)
+    missing_derivative : why the return has no derivative, in words; empty if it has one
     known_events : `event_rows`, if known
 
     Times are in units of 1/ω, states in those of `Model`.
@@ -74,6 +75,7 @@ class PeriodicOrbit:
     return_time: float
     returned: ChainState
     monodromy: np.ndarray
+    missing_derivative: str = ""
     known_events: InitVar[np.ndarray | None] = None
 
     def __post_init__(self, known_events: np.ndarray | None) -> None:
@@ -217,7 +219,7 @@ def solve_return(
         if size <= target_residual or (size <= TOLERANCE * max(1.0, speed) and size > 0.25 * last):
             if np.abs(difference).max() > TOLERANCE * max(1.0, speed) or (end.stuck != start.stuck).any():
                 break
-            return PeriodicOrbit(model, symmetry, reference, time, end, changed, _event_rows(mapping, time))
+            return _orbit(mapping, reference, time, end, changed)
         if iteration > FREE_ITERATIONS and size > last:
             break
         last = size
@@ -251,7 +253,17 @@ def orbit_of(model: Model, state: ChainState, time: float, symmetry: Symmetry) -
     """
     mapping = ReturnMap(model, symmetry)
     end, changed = mapping.end_and_tangent(state, time)
-    return PeriodicOrbit(model, symmetry, state, time, end, changed, _event_rows(mapping, time))
+    return _orbit(mapping, state, time, end, changed)
+
+
+def _orbit(
+    mapping: ReturnMap, reference: ChainState, time: float, end: ChainState, changed: np.ndarray
+) -> PeriodicOrbit:
+    """Return the orbit whose return has just been integrated."""
+    events = _event_rows(mapping, time)
+    return PeriodicOrbit(
+        mapping.model, mapping.symmetry, reference, time, end, changed, mapping.missing_derivative, events
+    )
 
 
 def safe_offset(orbit: PeriodicOrbit) -> float:

@@ -18,6 +18,7 @@ from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.periodic_orbits.flow import OrbitError, rate, state_after
 from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.running.derivative import missing_derivative
 from burridge_knopoff.running.runner import Runner
 
 # Largest and smallest step for the derivative of a return. The error is of the order of the step, which is small enough
@@ -49,11 +50,17 @@ class ReturnMap:
     def end_and_tangent(self, start: ChainState, time: float) -> tuple[ChainState, np.ndarray]:
         """Return the end of a return and the linearized return map, shape (2 blocks, 2 blocks).
 
-        Velocities of stuck blocks cannot be perturbed: their columns are 0.
+        Velocities of stuck blocks cannot be perturbed: their columns are 0. Where `missing_derivative` says so, the map
+        is one of several directional derivatives.
         """
         self._runner.carry(self._free * np.concatenate([np.ones(len(start.stuck)), ~start.stuck]))
         end = self.end(start, time)
         return end, self._mirrored_rows(self._runner.perturbations)
+
+    @property
+    def missing_derivative(self) -> str:
+        """Why the last return has no derivative; empty if it has one."""
+        return missing_derivative(self._runner, mirror_symmetric=self.symmetry == Symmetry.SYNCHRONIZED)
 
     def event_rows(self) -> np.ndarray:
         """Return time, block (0 …) and kind (0 stop, 1 start) of each event of the last return, without reflection."""

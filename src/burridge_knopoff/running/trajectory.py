@@ -10,6 +10,7 @@ import numpy as np
 
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.running.derivative import missing_derivative
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import Status
@@ -29,7 +30,8 @@ class Trajectory:
     `event_block`, `event_kind` (events,), `event_position`, `event_velocity` (events, blocks), and likewise
     `earlier_event_…` for events without states; `crossing_…` (crossings,); `trajectory_time` (times,), `position`,
     `velocity` (times, blocks); `lyapunov_exponent` and its error (exponents,). The first dimension of `batch_…` is the
-    batch. docs/data.md describes each array. Averages are NaN unless `status` is completed.
+    batch. docs/data.md describes each array. Averages are NaN unless `status` is completed. Lyapunov exponents are also
+    NaN where perturbations have no linear growth; `missing_derivative` then says why, and is empty otherwise.
 
     >>> from burridge_knopoff import simulate
     >>> run = simulate("linearized", 0.08, "plus", transient=0, window=20, events="all")
@@ -74,6 +76,7 @@ class Trajectory:
     lyapunov_error: np.ndarray = field(repr=False)
     batch_lyapunov_exponent: np.ndarray = field(repr=False)
     lyapunov_infinite_count: int
+    missing_derivative: str
 
     def __repr__(self) -> str:
         return (
@@ -153,7 +156,8 @@ def _exponents(runner: Runner, settings: Settings, completed: bool) -> dict[str,
     mean = np.full(count, np.nan)
     error = np.full(count, np.nan)
     infinite = -1
-    if completed and count and settings.solver != "rk4":
+    reason = missing_derivative(runner) if count else ""
+    if completed and count and settings.solver != "rk4" and not reason:
         measured = runner.exponents.results()
         growth, duration = measured["growth"], measured["duration"]
         filled = duration > 0.0
@@ -174,4 +178,5 @@ def _exponents(runner: Runner, settings: Settings, completed: bool) -> dict[str,
         "lyapunov_error": error[order],
         "batch_lyapunov_exponent": batch[:, order],
         "lyapunov_infinite_count": infinite,
+        "missing_derivative": reason,
     }

@@ -12,6 +12,7 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.motion.kind import format_motion, motion_of_run
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.command import CHAIN_OPTIONS
+from burridge_knopoff.running.derivative import none_because
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.show.formatting import list_numbers, wrap_lines
 from burridge_knopoff.show.result import Result
@@ -90,7 +91,7 @@ def _outcome(point: xarray.Dataset, motion: MotionSettings) -> Iterator[tuple[st
             verb = "is" if infinite == 1 else "are"
             yield "", f"at least {infinite} of the {2 * chain.blocks} exponents {verb} -infinity"
     else:
-        yield "exponents", "none"
+        yield "exponents", none_because(point.attrs.get("missing_derivative", ""))
     yield "events", f"{point['event_count'].item()} stops and starts in the whole run"
     yield "", f"smallest friction Phi of a slipping block {run['least_friction']:.4g}"
     word = "most negative" if run["least_spring_force"] < 0.0 else "smallest"

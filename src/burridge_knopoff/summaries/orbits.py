@@ -189,12 +189,16 @@ def _fill_curve(
         except OrbitError as error:
             print(f"{model.law.name}: {error}")
             continue
-        spectrum = modes(orbit)
         values["status"][i, k] = OrbitStatus.FOUND
         values["period"][i, k] = orbit.period
         values["residual"][i, k] = orbit.residual
         values["lateral_slip_time"][i, k] = orbit.period - orbit.stick_time(0)
         values["center_stick_time"][i, k] = orbit.stick_time(1)
+        try:
+            spectrum = modes(orbit)
+        except OrbitError as error:
+            print(f"{model.law.name}: {error}")
+            continue
         values["transverse_multiplier"][i, k] = spectrum[0].real
         values["multiplier"][i, k] = np.stack([spectrum.real, spectrum.imag], axis=-1)
 
