@@ -8,6 +8,7 @@ import pytest
 from burridge_knopoff import Chain, InitialState, Model, Settings, law_of, simulate
 from burridge_knopoff.motion.frequency import leading_frequency
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
+from burridge_knopoff.summaries.attractor_observables import follow_attractor
 from burridge_knopoff.summaries.stick_slip import (
     correlation,
     cycle_time,
@@ -245,7 +246,7 @@ def test_frequencies_are_those_of_the_same_motion_in_other_units():
     stiff = Chain(3, coupling=400.0 * chain.coupling, pulling=tuple(400.0 * chain.driving))
     fast = {"transient": 25.0, "window": 30.0, "batches": 2, "trajectory_sampling": 0.005}
     moved = InitialState("moved", np.array(state.position) / 400.0, np.array(state.velocity) / 20.0)
-    frequencies = []
+    frequencies, along_attractors = [], []
     for model, initial, scale, settings in (
         (Model(chain, law_of("linearized", 0.08)), state, 1.0, {"transient": 500.0, "window": 600.0, "batches": 2}),
         (Model(stiff, law_of("linearized", 1.6), 0.005), moved, 20.0, fast),
@@ -253,7 +254,10 @@ def test_frequencies_are_those_of_the_same_motion_in_other_units():
         run = vars(simulate(model, initial=initial, settings=Settings(trajectory=0.5 / scale, **settings)))
         velocity, _, duration = long_velocity(run, model, settings["transient"])
         frequencies.append([leading_frequency(velocity[:, block], duration) / scale for block in range(3)])
+        along_attractors.append(follow_attractor(model, run["final"]).velocity_frequency / scale)
     assert frequencies[1] == pytest.approx(frequencies[0], rel=1e-3)
+    for found in along_attractors:
+        assert found == pytest.approx(frequencies[0], rel=2e-3)
 
 
 def test_events_before_the_window_do_not_affect_frequencies():

@@ -9,6 +9,7 @@ import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.frequency import leading_frequency, starts_of_blocks
+from burridge_knopoff.periodic_orbits.grazing_distances import longest_spacing
 from burridge_knopoff.running.section import SUM, Section
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
@@ -17,8 +18,9 @@ from burridge_knopoff.summaries.correlation import correlation
 #: Time for which each attractor is followed.
 DURATION = 1000.0
 
-# The spectrum uses every THINNING-th sample of the velocity.
-THINNING = 8
+# The velocity is sampled PER_SPACING times in the interval that resolves the motion of the chain. The spectrum uses
+# every THINNING-th sample and extends to three times the frequency of the fastest mode.
+PER_SPACING, THINNING = 2, 8
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,7 @@ def follow_attractor(model: Model, start: ChainState, section: Section = SUM) ->
     """Follow an attractor from one of its states; section : the section whose crossings are recorded."""
     settings = Settings(
         transient=0.0, window=DURATION, batches=2, sampling=DURATION, trajectory=DURATION, event_window=0.0,
-        lyapunov_exponents=0, section=section,
+        trajectory_sampling=longest_spacing(model.chain) / PER_SPACING, lyapunov_exponents=0, section=section,
     )  # fmt: skip
     trajectory = run(model, start, settings)
     events = trajectory.earlier_event_time, trajectory.earlier_event_block, trajectory.earlier_event_kind
