@@ -289,6 +289,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("minus_distance_vanishes", FAILS, alter("mean_distance", "settling_time", 8000.0)),
     ("minus_distance_vanishes", FAILS, alter("mean_distance", "settling_time", np.nan)),
     ("minus_distance_vanishes", NOT_TESTABLE, alter("mean_distance", "status", 1)),
+    ("minus_distance_vanishes", NOT_TESTABLE, alter("mean_distance", "distance_rounding", 1e-6)),
     ("minus_distance_vanishes", LOOSELY, alter("mean_distance", "settling_time", 4500.0)),
     ("history_decides", HOLDS, alter("attractors", "basin_count", 0, attractor=[1, 2])),
     ("history_decides", FAILS, both(alter("attractors", "branch", 0), reached(0))),

@@ -209,10 +209,11 @@ def _mean_distance() -> xarray.Dataset:
             "synchronized": (POINT, (MEANS < 1e-6).astype("i1")),
             "least_friction": (POINT, 0.9),
             "window_least_friction": (POINT, 1.0 - A**2),
-            "settling_time": ((*POINT, "level"), [100.0, 200.0, 1100.0, 3900.0]),
+            "settling_time": ((*POINT, "level"), [100.0, 200.0, 1100.0, 2000.0, 3900.0]),
+            "distance_rounding": (POINT, 1e-13),
             "status": (POINT, np.int8(0)),
         },
-        level=[0.01, 0.001, 1e-6, 2e-15],
+        level=[0.01, 0.001, 1e-6, 1e-9, 1e-12],
     )
 
 

@@ -15,7 +15,8 @@ from burridge_knopoff import (
     limit_cycle,
     simulate,
 )
-from burridge_knopoff.motion.frequency import leading_frequency
+from burridge_knopoff.motion.frequency import leading_frequency, starts_of_blocks
+from burridge_knopoff.summaries.attractor_observables import follow_attractor
 from tests.refused import refused
 from tests.scipy_flow import model_events
 
@@ -201,6 +202,7 @@ def test_a_push_within_a_slip_is_no_further_slip():
     events, _ = model_events(model, at, 200.0)
     frequency, error = block_frequencies(model, at, 40.0 / 0.011)
     run = simulate(model, initial=at, transient=0.0, window=40.0 / 0.011, trajectory=40.0 / 0.011)
+    assert follow_attractor(model, at).velocity_frequency == pytest.approx(frequency, rel=1e-6)
     for block in range(2):
         starts = [time for time, number, kind in events if (number, kind) == (block + 1, 1)]
         assert len(starts) > 2
@@ -242,6 +244,34 @@ def test_two_humps_are_one_slip_in_samples(rest):
     if rest:
         values[200:300] = 0.01
     assert leading_frequency(values, 1000.0) == pytest.approx(0.02, rel=1e-6)
+
+
+@pytest.mark.parametrize("stick", [3.0, 0.1, 1e-5])
+def test_slips_are_parted_by_sticks_of_any_length(stick):
+    """Slips of 1.3 after creep and a stick, every 9.97; samples every 0.4 miss most of the short sticks."""
+    begins = 5.0 + 9.97 * np.arange(100) + 0.01 * np.random.default_rng(1).uniform(-1.0, 1.0, 100)
+    time = np.linspace(0.0, 1000.0, 2501)
+    since = time[:, None] - begins
+    slips = (np.where((since > 0.0) & (since < 1.3), np.sin(np.pi * since / 1.3) ** 2, 0.0)).sum(axis=1)
+    values = np.where(((since <= 0.0) & (since > -stick)).any(axis=1), 0.0, slips + 0.02)
+    order = np.argsort(np.concatenate([begins - stick, begins]))
+    events = np.sort(np.concatenate([begins - stick, begins]))
+    [starts] = starts_of_blocks(events, np.ones(200, int), (order >= 100).astype(int), 1)
+    assert np.array_equal(starts, begins)
+    assert leading_frequency(values, 1000.0, starts) == pytest.approx(1.0 / 9.97, rel=1e-4)
+    # The samples alone tell slips apart only if no stick is missed, or every stick.
+    by_samples = leading_frequency(values, 1000.0)
+    assert by_samples < 0.06 if stick == 0.1 else by_samples == pytest.approx(1.0 / 9.97, rel=1e-3)
+
+
+def test_a_block_that_stops_has_its_starts_and_another_has_none():
+    events = np.array([1.0, 2.0, 3.0]), np.array([2, 2, 1]), np.array([0, 1, 1])
+    first, second, third = starts_of_blocks(*events, 3)
+    assert (first, third) == (None, None)
+    assert second.tolist() == [2.0]
+    values = np.where(np.arange(1000) % 100 < 10, 1.0, 0.0)
+    assert np.isnan(leading_frequency(values, 999.0, np.array([10.0, 110.0])))
+    assert leading_frequency(values, 999.0, np.array([10.0, 110.0, 210.0])) == pytest.approx(0.01, rel=1e-12)
 
 
 @pytest.mark.parametrize(

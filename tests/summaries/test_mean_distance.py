@@ -1,4 +1,4 @@
-"""Settling of J, the kinds of motion that follow from exponents and section points, and the stored section points."""
+"""Settling times of J, the kinds of motion that follow from exponents and section points, and the stored points."""
 
 import dataclasses
 
@@ -7,29 +7,11 @@ import pytest
 
 from burridge_knopoff import Chain, InitialState, Model, MotionKind, law_of, simulate
 from burridge_knopoff.summaries import bifurcation_diagram
-from burridge_knopoff.summaries.runs import LEVELS, settling_time
 from tests.grids import PAPER_MODELS, grid_of
 from tests.sections import MOTION
 from tests.summaries.points import kinds, means, write_points
 
-TIME = np.array([0.0, 5.0, 10.0, 15.0])
 SHORT = {"transient": 50.0, "window": 50.0, "batches": 2}
-
-
-@pytest.mark.parametrize(
-    ("distance", "expected"),
-    [
-        ([1.0, 0.5, 0.05, 0.005], 15.0),
-        ([1.0, 0.005, 0.05, 0.005], 15.0),  # rises above the level once
-        ([1.0, 0.005, 0.001, 0.0], 5.0),
-        ([0.001, 0.001, 0.001, 0.001], 0.0),
-        ([0.001, 0.001, 0.001, 0.01], np.nan),  # at the level is not below it
-        ([0.001, 0.001, 0.001, np.nan], np.nan),
-        ([0.001, np.nan, 0.001, 0.001], 10.0),
-    ],
-)
-def test_settling_time(distance, expected):
-    assert settling_time(TIME, np.array(distance), [0.01]) == pytest.approx([expected], nan_ok=True)
 
 
 def test_settling_times_of_runs(tmp_path):
@@ -41,10 +23,10 @@ def test_settling_times_of_runs(tmp_path):
     times = means(grid)["settling_time"]
     # Near synchrony J decays like the transverse multiplier to the power of the number of periods.
     settled = times.sel(law="linearized", initial="minus", a=0.08)
-    np.testing.assert_array_equal(settled.values, settling_time(run.time, run.distance, LEVELS))
-    assert 500.0 < settled.sel(level=1e-6).item() < 1500.0
+    np.testing.assert_array_equal(settled.values, run.settling_time)
+    assert settled.sel(level=1e-6).item() == pytest.approx(1064.848, abs=1e-3)
     assert settled.sel(level=1e-2) <= settled.sel(level=1e-3) < settled.sel(level=1e-6)
-    assert np.isnan(times.sel(law="nonlinear")).all()
+    assert np.isnan(times.sel(law="linearized", level=1e-12))
 
 
 def test_the_least_friction_in_the_window_is_not_that_of_the_transient(tmp_path):

@@ -35,7 +35,7 @@ def ruled(monkeypatch):
 
     monkeypatch.setattr(phases, "label_states", label_states)
     correlations = iter([1.0, -0.5, -0.7] * 100)
-    followed = partial(AttractorObservables, np.empty(0), velocity=np.empty((0, 3)))
+    followed = partial(AttractorObservables, np.empty(0), velocity=np.empty((0, 3)), starts=())
     monkeypatch.setattr(
         phases, "follow_attractor", lambda model, start: followed(velocity_correlation=next(correlations))
     )

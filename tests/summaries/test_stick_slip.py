@@ -8,10 +8,13 @@ import pytest
 from burridge_knopoff import Chain, InitialState, Model, Settings, law_of, simulate
 from burridge_knopoff.motion.frequency import leading_frequency
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
+from burridge_knopoff.summaries.attractor_observables import follow_attractor
 from burridge_knopoff.summaries.stick_slip import (
     correlation,
     cycle_time,
+    least_velocity,
     long_velocity,
+    position_amplitude,
     stick_fraction,
     summarize,
 )
@@ -94,6 +97,33 @@ def test_correlation():
     # Rounding errors have no correlation, in either series.
     constant = 0.1 + 1e-12 * one
     assert np.isnan([correlation(constant, one), correlation(one, constant)]).all()
+
+
+def test_the_amplitude_of_a_position_is_found_between_samples():
+    """Of motions with a known range; in one the extreme is at the end, and in one there is a single sample."""
+    time = np.linspace(0.0, 3.1, 63)
+    position = np.stack([np.sin(2.0 * time + 0.3), 0.3 * np.cos(5.0 * time), time**2], axis=1)
+    rate = np.stack([2.0 * np.cos(2.0 * time + 0.3), -1.5 * np.sin(5.0 * time), 2.0 * time], axis=1)
+    expected = [1.0, 0.3, 0.5 * 3.1**2]
+    assert position_amplitude(time, position, rate) == pytest.approx(expected, abs=2e-6)
+    assert (0.5 * np.ptp(position, axis=0))[0] < 1.0 - 1e-5
+    assert position_amplitude(time[:1], position[:1], rate[:1]).tolist() == [0.0, 0.0, 0.0]
+
+
+def test_the_amplitude_is_that_of_dense_samples():
+    coarse, dense = (
+        simulate("linearized", 0.0475, "plus", transient=100.0, window=60.0, batches=2, trajectory_sampling=interval)
+        for interval in (0.1, 1e-3)
+    )
+    found = position_amplitude(coarse.trajectory_time, coarse.position, coarse.velocity - 0.1)
+    assert found == pytest.approx(0.5 * np.ptp(dense.position, axis=0), abs=2e-7)
+
+
+def test_a_stick_between_two_samples_has_velocity_zero():
+    run = {"trajectory_time": np.linspace(10.0, 11.0, 11), "velocity": np.full((11, 3), 0.2)}
+    run["velocity"][3, 2] = -0.1
+    least = least_velocity(run, np.array([9.99, 10.31, 10.97]), np.array([2, 1, 3]))
+    assert least.tolist() == [0.0, 0.2, -0.1]
 
 
 SETTINGS = {"transient": 1500.0, "window": 400.0, "batches": 4}
@@ -189,7 +219,7 @@ def velocities(law, a, initial, **settings):
 def test_frequencies_are_those_of_the_motion(law, a, initial):
     """Compare with samples of the whole motion, 0.1 apart."""
     run, kept, model = velocities(law, a, initial)
-    velocity, duration = long_velocity(kept, model, 500.0)
+    velocity, _, duration = long_velocity(kept, model, 500.0)
     assert duration == pytest.approx(600.0, rel=0.02)
     for block in range(run.velocity.shape[1]):
         expected = leading_frequency(run.velocity[:, block], np.ptp(run.trajectory_time))
@@ -216,21 +246,24 @@ def test_frequencies_are_those_of_the_same_motion_in_other_units():
     stiff = Chain(3, coupling=400.0 * chain.coupling, pulling=tuple(400.0 * chain.driving))
     fast = {"transient": 25.0, "window": 30.0, "batches": 2, "trajectory_sampling": 0.005}
     moved = InitialState("moved", np.array(state.position) / 400.0, np.array(state.velocity) / 20.0)
-    frequencies = []
+    frequencies, along_attractors = [], []
     for model, initial, scale, settings in (
         (Model(chain, law_of("linearized", 0.08)), state, 1.0, {"transient": 500.0, "window": 600.0, "batches": 2}),
         (Model(stiff, law_of("linearized", 1.6), 0.005), moved, 20.0, fast),
     ):
         run = vars(simulate(model, initial=initial, settings=Settings(trajectory=0.5 / scale, **settings)))
-        velocity, duration = long_velocity(run, model, settings["transient"])
+        velocity, _, duration = long_velocity(run, model, settings["transient"])
         frequencies.append([leading_frequency(velocity[:, block], duration) / scale for block in range(3)])
+        along_attractors.append(follow_attractor(model, run["final"]).velocity_frequency / scale)
     assert frequencies[1] == pytest.approx(frequencies[0], rel=1e-3)
+    for found in along_attractors:
+        assert found == pytest.approx(frequencies[0], rel=2e-3)
 
 
 def test_events_before_the_window_do_not_affect_frequencies():
     _, kept, model = velocities("linearized", 0.0475, "plus", transient=300.0, window=200.0, events="all")
     assert kept["event_time"][0] < 10.0
-    velocity, duration = long_velocity(kept, model, 300.0)
+    velocity, _, duration = long_velocity(kept, model, 300.0)
     assert 190.0 < duration <= 200.0
     later = {name: kept[name][kept["event_time"] >= 300.0] for name in kept if name in EVENT_STATES}
     assert (long_velocity({**kept, **later}, model, 300.0)[0] == velocity).all()
@@ -247,7 +280,7 @@ def test_a_block_at_rest_has_no_frequency():
         start="tested",
         trajectory=5.0,
     )
-    record, duration = long_velocity(vars(run), model, 20.0)
+    record, _, duration = long_velocity(vars(run), model, 20.0)
     assert duration > 30.0
     assert (record[:, 1] == 0.0).all()
     assert np.isnan(leading_frequency(record[:, 1], duration))

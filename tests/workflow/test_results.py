@@ -68,7 +68,7 @@ def test_every_file_has_its_metadata(results):
 
 def test_mean_distance_summary(results):
     with xr.open_dataset(results / "summary" / "mean_distance.nc") as summary:
-        assert dict(summary.sizes) == {"law": 2, "initial": 2, "a": 4, "level": 4}
+        assert dict(summary.sizes) == {"law": 2, "initial": 2, "a": 4, "level": 5}
         assert summary["a"].values.tolist() == GRID
         for law in ("linearized", "nonlinear"):
             run = simulate(law, 0.2, "plus", **OPTIONS)

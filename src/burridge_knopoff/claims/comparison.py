@@ -22,8 +22,7 @@ def _loss_of_synchrony(values: Values) -> str:
 
 
 def _settling(values: Values) -> str:
-    times = {level: values[f"time τ from which on J < {level}"] for level in ("1e-06", "2e-15")}
-    return f"J < 1e-06 from {times['1e-06']:g} on, and J < 2e-15, the level of rounding, from {times['2e-15']:g} on"
+    return f"J < 1e-06 from {values['time τ from which on J < 1e-06']:.2f} on"
 
 
 def _frequencies(values: Values) -> str:

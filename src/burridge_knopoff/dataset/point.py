@@ -26,6 +26,7 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.files import write_whole
 from burridge_knopoff.provenance.sources import SOFTWARE
 from burridge_knopoff.running.command import CHAIN_OPTIONS, simulate_command
+from burridge_knopoff.running.settling import LEVELS, ROUNDING_UNITS
 from burridge_knopoff.running.status import STATUS_WORDS, Status
 from burridge_knopoff.running.trajectory import Trajectory
 
@@ -87,6 +88,23 @@ POINT_VARIABLES: dict[str, Variable] = {
         "largest number of blocks stuck at once",
         {"comment": "exact if all 2 N exponents were computed; -1 if none were computed"},
     ),
+    "level": _V(("level",), "f8", "level of J", coordinate=True),
+    "settling_time": _V(
+        ("level",),
+        "f8",
+        "settling time of J: last time tau at which J is at least at the level, found between events",
+        {
+            "ancillary_variables": "distance_rounding status",
+            "comment": "the beginning of the run if J is always below; NaN if it is not below at the end, and for a "
+            "level of rounding",
+        },
+    ),
+    "distance_rounding": _V(
+        (),
+        "f8",
+        f"rounding of J: a lower level is rounding; {ROUNDING_UNITS:g} roundings of the largest |U - v*tau| or |U'| at "
+        "the end of the run",
+    ),
     "time": _V(("sample",), "f8", "time tau of a sample of J"),
     "distance": _V(("sample",), "f8", "phase-space distance J: between the end blocks"),
     "earlier_event_time": _V(("earlier_event",), "f8", "time tau of an earlier event: before those with states"),
@@ -120,6 +138,7 @@ def point_values(trajectory: Trajectory) -> dict[str, Any]:
         "initial_position": position,
         "initial_velocity": velocity,
         "status": Status[trajectory.status.upper()],
+        "level": LEVELS,
         "batch": trajectory.begin_time + settings.transient + width * (np.arange(settings.batches) + 0.5),
     }
     return {name: special[name] if name in special else getattr(trajectory, name) for name in POINT_VARIABLES}

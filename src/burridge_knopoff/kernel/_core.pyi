@@ -114,7 +114,7 @@ class EventLog:
 
 class Observer:
     """
-    The measurements of one run: J averaged over batches, J and states at given times, section crossings.
+    The measurements of one run: J averaged over batches, J and states at given times, when J was last at levels, section crossings.
     """
 
     def __init__(
@@ -126,6 +126,7 @@ class Observer:
         trajectory_time: Annotated[
             NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)
         ],
+        level: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
         section_only: bool,
         section: int,
         most_numbers: float,

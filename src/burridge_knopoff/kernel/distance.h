@@ -1,10 +1,13 @@
-// The distance J(τ) between the two end blocks in phase space, over one piece: its values and its integral.
+// The distance J(τ) between the two end blocks in phase space, over one piece: its values, its integral, and its last
+// time at a level.
 //
 // J = sqrt(d² + d'²) with d = U_N − U_1 is analytic wherever it is not 0. The error of Gauss-Legendre quadrature with m
 // nodes is about the Legendre coefficient of degree 2m. The coefficients fall geometrically, so the squares of the last
 // two that the nodes resolve, divided by the first, estimate the error. A panel whose estimate is too large is halved:
 // near a close approach J is the modulus of a complex polynomial with a root near the real axis, where panels become
 // short.
+//
+// level² − J² is a polynomial, so that its last root cannot be missed, see polynomial.h.
 //
 // Reference: L. N. Trefethen, "Is Gauss quadrature better than Clenshaw-Curtis?", SIAM Rev. 50 (2008) 67-87.
 #pragma once
@@ -75,6 +78,22 @@ BK_INLINE void distance_at(const C *position, const C *velocity, int n, T t, T &
     rate = even_rate + t * odd_rate;
 }
 
+// A bound on J² from 0 to t ≥ 0, from 2n + 2 coefficients of d and d'.
+template <class T>
+BK_INLINE T distance_bound(const T *position, const T *velocity, int n, T t) {
+    const T zero = t - t, square = t * t;
+    T even = zero, odd = zero, even_rate = zero, odd_rate = zero;
+    auto size = [&](T x) { return x < zero ? -x : x; };
+    for (int k = n; k >= 0; k--) {
+        even = even * square + size(position[2 * k]);
+        odd = odd * square + size(position[2 * k + 1]);
+        even_rate = even_rate * square + size(velocity[2 * k]);
+        odd_rate = odd_rate * square + size(velocity[2 * k + 1]);
+    }
+    const T d = even + t * odd, rate = even_rate + t * odd_rate;
+    return d * d + rate * rate;
+}
+
 template <class T>
 BK_INLINE T weigh(const double *weight, const T *value) {
     T part[8];
@@ -108,6 +127,26 @@ class Distance {
         double d, rate;
         distance_at(position, velocity, degree / 2, t, d, rate);
         return std::sqrt(d * d + rate * rate);
+    }
+
+    // A bound on J from 0 to t.
+    double bound(double t) const { return std::sqrt(distance_bound(position, velocity, degree / 2, t)); }
+
+    // The last time of a part of the piece at which J is at least at a level, −1 if it never is. It is below at the end
+    // of the part.
+    double last_at(double level, double from, double to) const {
+        Polynomial below;
+        // The terms of higher degrees are below the rounding error, as in the series of d.
+        below.degree = std::min(2 * degree, MOST_TERMS);
+        for (int k = 0; k <= below.degree; k++)
+            for (int j = std::max(0, k - degree); j <= std::min(k, degree); j++)
+                below.coefficient[k] -= position[j] * position[k - j] + velocity[j] * velocity[k - j];
+        below.coefficient[0] += level * level;
+        // Backwards from the end.
+        below.shift(to);
+        for (int k = 1; k <= below.degree; k += 2) below.coefficient[k] = -below.coefficient[k];
+        const double back = below.first_root(to - from);
+        return back < 0.0 ? -1.0 : to - back;
     }
 
     // The integral of J from start to stop, times of the piece.

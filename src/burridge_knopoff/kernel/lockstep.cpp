@@ -51,6 +51,7 @@ void Lockstep::enter(Run &run, int lane) {
     longest_follow[lane] = Run::LONGEST_FOLLOW * run.follow_unit();
     observed[lane] = -int64_t(run.observing);
     averaged[lane] = -int64_t(run.observing && !run.observer.section_only);
+    compared[lane] = -int64_t(run.observing && !run.observer.level.empty());
     transient[lane] = run.observer.transient();
     ends_apart[lane] = run.observer.apart;
     running[lane] = -int64_t(run.exponents.running);
@@ -102,6 +103,8 @@ void Lockstep::aim(int lane) {
     distance_time[lane] = next(observer.distance_time, observer.next_distance);
     trajectory_time[lane] = next(observer.trajectory_time, observer.next_trajectory);
     side[lane] = observed[lane] ? observer.side : 0.0;
+    lower[lane] = observer.lower;
+    higher[lane] = observer.higher;
     for (int stage : {TRANSIENT, WINDOW}) {
         highest_speed[stage][lane] = averaged[lane] ? observer.highest_speed[stage] : NEVER;
         lowest_force[stage][lane] = averaged[lane] ? observer.lowest_force[stage] : -NEVER;
@@ -186,7 +189,7 @@ void Lockstep::change(int i, mask where) {
 // Take all observables from a piece.
 void Lockstep::observe(vec length) {
     const mask in_window = active & observed & (length > until(transient));
-    const mask wanted = active & observed & ((averaged & in_window) | (until(distance_time) <= length));
+    const mask wanted = active & observed & (compared | (averaged & in_window) | (until(distance_time) <= length));
     if (any(wanted)) average(length, wanted);
     if (any(in_window)) {
         using Search = EventSearch<Trajectories>;
@@ -204,7 +207,7 @@ void Lockstep::observe(vec length) {
         if (sampled >> lane & 1) sample(length[lane], lane);
 }
 
-// Average J over the piece, and sample it.
+// Average J over the piece, sample it, and compare it with the levels.
 void Lockstep::average(vec length, mask where) {
     vec *d = apart.at(), *rate = apart_rate.at();
     mask resting = series.u(0)[blocks - 1] - series.u(0)[0] == vec{};
@@ -225,7 +228,9 @@ void Lockstep::average(vec length, mask where) {
             aim(lane);
         }
     }
-    if (!any(where & averaged & (length > until(transient)))) return;
+    compare(length, where & compared);
+    const mask averaging = where & averaged & (length > until(transient));
+    if (!any(averaging)) return;
     const vec ends = until(batch_end), begin = largest(vec{}, until(batch_begin)), stop = least(ends, length);
     const vec middle = 0.5 * (begin + stop), half = 0.5 * (stop - begin);
     vec value[NODES], error, moved, sped;
@@ -238,20 +243,43 @@ void Lockstep::average(vec length, mask where) {
     const vec constant = (stop - begin) * root(d[0] * d[0] + rate[0] * rate[0]);
     const vec integral = select(resting, constant, 2.0 * half * mean);
     for (int lane = 0; lane < LANES; lane++) {
-        if (!where[lane] || !averaged[lane]) continue;
+        if (!averaging[lane]) continue;
         Observer &observer = own[lane]->observer;
         if (simple[lane]) {
             if (stop[lane] > begin[lane]) observer.add(integral[lane]);
             continue;
         }
-        for (int k = 0; k <= ORDER; k++) {
-            observer.distance.position[k] = d[k][lane];
-            observer.distance.velocity[k] = rate[k][lane];
-        }
-        observer.distance.begin(ORDER);
+        load_distance(lane);
         observer.average(clock_of(lane), 0.0, length[lane]);
         aim(lane);
     }
+}
+
+// Compare J with the levels.
+void Lockstep::compare(vec length, mask where) {
+    if (!any(where)) return;
+    const vec *d = apart.at(), *rate = apart_rate.at();
+    vec moved, sped;
+    distance_at(d, rate, ORDER / 2, length, moved, sped);
+    mask passed = root(moved * moved + sped * sped) < lower;
+    const mask below = higher < INFINITY;
+    if (any(where & below)) passed |= below & (root(distance_bound(d, rate, ORDER / 2, length)) >= higher);
+    const int which = bits(where & passed);
+    for (int lane = 0; which >> lane; lane++) {
+        if (!(which >> lane & 1)) continue;
+        load_distance(lane);
+        own[lane]->observer.compare(clock_of(lane), 0.0, length[lane]);
+        aim(lane);
+    }
+}
+
+void Lockstep::load_distance(int lane) {
+    Distance &distance = own[lane]->observer.distance;
+    for (int k = 0; k <= ORDER; k++) {
+        distance.position[k] = apart[k][lane];
+        distance.velocity[k] = apart_rate[k][lane];
+    }
+    distance.begin(ORDER);
 }
 
 // Record where W changes its sign.

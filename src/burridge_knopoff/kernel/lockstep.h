@@ -52,10 +52,10 @@ class Lockstep : private Example, public TrajectoryLanes {
 
     // The next times of the observers, whether J is averaged, and the extremes so far.
     vec end{}, transient{}, batch_begin{}, batch_end{}, distance_time{}, trajectory_time{}, since_event{}, side{},
-        ends_apart{};
+        ends_apart{}, lower{}, higher{};
     vec highest_speed[2]{}, lowest_force[2]{};  // by Stage
     vec longest_follow{}, steps{}, most_steps{};
-    mask observed{}, averaged{}, running{}, halts{}, accumulating{}, changed{};
+    mask observed{}, averaged{}, compared{}, running{}, halts{}, accumulating{}, changed{};
     std::vector<mask> in_section;
     Trajectories::Rows apart, apart_rate;  // coefficients of d and d'
 
@@ -67,6 +67,8 @@ class Lockstep : private Example, public TrajectoryLanes {
     void load_section();
     void observe(vec length);
     void average(vec length, mask where);
+    void compare(vec length, mask where);
+    void load_distance(int lane);
     void cross(double crossing, double length, int lane);
     void extremes(vec length);
     void sample(double length, int lane);

@@ -246,16 +246,17 @@ NB_MODULE(_core, m) {
 
     nb::class_<Observer>(
         m, "Observer",
-        "The measurements of one run: J averaged over batches, J and states at given times, section crossings.")
+        "The measurements of one run: J averaged over batches, J and states at given times, when J was last at levels, "
+        "section crossings.")
         .def(
             "__init__",
             [](Observer *at, int blocks, double apart, Numbers edge, Numbers distance_time, Numbers trajectory_time,
-               bool section_only, int section, double most_numbers) {
+               Numbers level, bool section_only, int section, double most_numbers) {
                 new (at) Observer(blocks, apart, copied(edge), copied(distance_time), copied(trajectory_time),
-                                  section_only, section, most_numbers);
+                                  copied(level), section_only, section, most_numbers);
             },
-            "blocks"_a, "apart"_a, "edge"_a, "distance_time"_a, "trajectory_time"_a, "section_only"_a, "section"_a,
-            "most_numbers"_a)
+            "blocks"_a, "apart"_a, "edge"_a, "distance_time"_a, "trajectory_time"_a, "level"_a, "section_only"_a,
+            "section"_a, "most_numbers"_a)
         .def_ro("crossings", &Observer::crossings)
         .def_ro("section_only", &Observer::section_only)
         .def_prop_ro("end", &Observer::end)
@@ -272,6 +273,10 @@ NB_MODULE(_core, m) {
                 nb::dict made;
                 made["batch_integral"] = numbers(integral);
                 made["distance"] = numbers(o.distance_sample);
+                std::vector<double> settled(o.last_at);
+                for (double &time : settled)
+                    if (std::isinf(time)) time = time > 0.0 ? NAN : o.begin;
+                made["settling_time"] = numbers(settled);
                 made["position"] = numbers(o.trajectory_position, {count, blocks});
                 made["velocity"] = numbers(o.trajectory_velocity, {count, blocks});
                 made["crossing_time"] = numbers(o.crossings.time);

@@ -14,12 +14,13 @@ enum Stage { TRANSIENT, WINDOW };
 //
 // edge : batch boundaries; the first is the end of the transient, the last the end of the run
 // distance_time : times at which J is sampled; trajectory_time : times at which positions and velocities are sampled
+// level : levels of J; the last time at which J is at least at each of them is found
 // section_only : whether averages of J and extremes are omitted
 // section : block whose x_i is W, from 1 on; 0 if W is the sum of all x_i
 struct Observer {
     const int blocks;
     const double apart;  // U_N − U_1 in uniform sliding
-    const std::vector<double> edge, distance_time, trajectory_time;
+    const std::vector<double> edge, distance_time, trajectory_time, level;
     const bool section_only;
     const int section;
     double begin = 0.0;
@@ -31,14 +32,22 @@ struct Observer {
     double section_from = UNKNOWN;
     double highest_speed[2] = {NOTHING, NOTHING}, lowest_force[2] = {-NOTHING, -NOTHING};
     Distance distance;
+    // When J was last at least at each level: ∞ while it is, −∞ if it has not been.
+    std::vector<double> last_at;
+    // The levels next to J at the end of the piece before, which is at least at the lower one and below the higher one.
+    double lower = -INFINITY, higher = INFINITY;
 
     Observer(int blocks, double apart, std::vector<double> edges, std::vector<double> distance_times,
-             std::vector<double> trajectory_times, bool section_only, int section, double most_numbers)
+             std::vector<double> trajectory_times, std::vector<double> levels, bool section_only, int section,
+             double most_numbers)
         : blocks(blocks), apart(apart), edge(std::move(edges)), distance_time(std::move(distance_times)),
-          trajectory_time(std::move(trajectory_times)), section_only(section_only), section(section),
-          batch_integral(edge.size() - 1), batch_rest(edge.size() - 1), distance_sample(distance_time.size(), NAN),
-          trajectory_position(trajectory_time.size() * blocks, NAN),
-          trajectory_velocity(trajectory_time.size() * blocks, NAN), crossings(2, most_numbers) {}
+          trajectory_time(std::move(trajectory_times)), level(std::move(levels)), section_only(section_only),
+          section(section), batch_integral(edge.size() - 1), batch_rest(edge.size() - 1),
+          distance_sample(distance_time.size(), NAN), trajectory_position(trajectory_time.size() * blocks, NAN),
+          trajectory_velocity(trajectory_time.size() * blocks, NAN), crossings(2, most_numbers),
+          last_at(level.size(), -INFINITY) {
+        for (double one : level) higher = std::min(higher, one);
+    }
 
     double transient() const { return edge.front(); }
     double end() const { return edge.back(); }
@@ -46,11 +55,12 @@ struct Observer {
 
     // Whether J is needed in a piece, up to a time of it.
     bool wants_distance(const Clock &start, double to) const {
-        return (!section_only && to > start.until(transient())) ||
+        return !level.empty() || (!section_only && to > start.until(transient())) ||
                (next_distance < distance_time.size() && start.until(distance_time[next_distance]) <= to);
     }
 
-    // Add the integral of J between two times of a piece, whose `distance` is loaded, and take samples.
+    // Add the integral of J between two times of a piece, whose `distance` is loaded, take samples, and compare J with
+    // the levels.
     void average(const Clock &start, double from, double to) {
         if (!section_only && to > start.until(transient())) {
             double begins = std::max(from, start.until(edge[batch]));
@@ -66,6 +76,33 @@ struct Observer {
             const double t = start.until(distance_time[next_distance]);
             if (t > to) break;
             distance_sample[next_distance] = distance.value(t);
+        }
+        if (!level.empty()) compare(start, from, to);
+    }
+
+    // Find when J is last at least at each level between two times of a piece.
+    void compare(const Clock &start, double from, double to) {
+        // A continued run repeats a piece of the previous run.
+        from = std::max(from, start.until(begin));
+        if (!(from <= to)) return;
+        const double most = higher < INFINITY ? distance.bound(to) : 0.0;
+        if (lower == -INFINITY && most < higher) return;
+        const double ends = distance.value(to);
+        if (ends >= lower && most < higher) return;
+        lower = -INFINITY;
+        higher = INFINITY;
+        for (size_t k = 0; k < level.size(); k++) {
+            if (ends >= level[k]) {
+                last_at[k] = INFINITY;
+                lower = std::max(lower, level[k]);
+                continue;
+            }
+            higher = std::min(higher, level[k]);
+            if (most < level[k] && last_at[k] < INFINITY) continue;
+            double last = distance.last_at(level[k], from, to);
+            // Rounding may hide that J leaves the level between two pieces.
+            if (last < from && last_at[k] == INFINITY) last = from;
+            if (last >= from) last_at[k] = start.time + (start.rest + last);
         }
     }
 

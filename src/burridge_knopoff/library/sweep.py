@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 _T = TypeVar("_T")
 
 #: Dimensions of the same size in every run, and the variables of a point over no others.
-_COMMON_DIMENSIONS = {"batch", "exponent"}
+_COMMON_DIMENSIONS = {"batch", "exponent", "level"}
 _COMMON = {name: item for name, item in POINT_VARIABLES.items() if set(item.dimensions) <= _COMMON_DIMENSIONS}
 
 
@@ -66,11 +66,11 @@ def sweep(
     cores : number of simultaneous runs, by default the number of cores; results do not depend on it
 
     Each parameter given as a sequence is a dimension of the Dataset: first a, then the others in the order given; that
-    of `mass[3]` is `mass_3`. The variables are those of a point file (docs/data.md) with one value per run, batch or
-    exponent, among them `mean_distance`, `mean_distance_error`, `lyapunov_exponent` and `status`, which is 0 for
-    a completed run. The states `minus` and `plus` follow v; other numbers are the same at every point, and so are those
-    of every state if springs, masses or thresholds vary: the attribute `remark` then says so. Raises ValueError, one
-    line, for a wrong argument; an error at one point names it.
+    of `mass[3]` is `mass_3`. The variables are those of a point file (docs/data.md) with one value per run, batch,
+    exponent or level of J, among them `mean_distance`, `mean_distance_error`, `lyapunov_exponent` and `status`, which
+    is 0 for a completed run. The states `minus` and `plus` follow v; other numbers are the same at every point, and so
+    are those of every state if springs, masses or thresholds vary: the attribute `remark` then says so. Raises
+    ValueError, one line, for a wrong argument; an error at one point names it.
 
     >>> from burridge_knopoff import sweep
     >>> runs = sweep("nonlinear", [0.02, 0.05, 0.3], transient=1000, window=500, batches=2)

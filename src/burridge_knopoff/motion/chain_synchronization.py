@@ -71,10 +71,11 @@ class Fate:
         the motion there is negative. Undetermined if this exponent is not negative; if at the time limit the distance
         still falls, or is small while the transverse exponent is not positive beyond its error; or if the run failed.
         Otherwise not synchronized
-    time : time at which the synchronization distance was reached, NaN if it was not
-    distance, mean_distance : largest and mean mirror distance in the last quarter of the time limit, or the distance at
-        `time`
-    pairs : number of pairs below the synchronization threshold in the last quarter; all pairs if synchronized
+    time : first of the checks, 20 apart, at which the synchronization distance was reached, NaN if it was not
+    distance, mean_distance : largest and mean mirror distance at the checks in the last quarter of the time limit, or
+        the distance at `time`
+    pairs : number of pairs below the synchronization threshold at the checks in the last quarter; all pairs if
+        synchronized
     transverse_exponent : exponent of the symmetric motion that was reached or approached
     """
 

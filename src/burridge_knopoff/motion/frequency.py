@@ -132,9 +132,17 @@ def slip_starts(model: Model, state: ChainState, time: np.ndarray) -> list[np.nd
     runner.begin(state, 0.0)
     runner.run(time[-1])
     log = runner.log.earlier_events
-    at, (block, is_start) = log.times() / time[1], log.values().T
-    of_blocks = [block == 1 + n for n in range(model.blocks)]
-    return [at[events & (is_start == 1)] if (is_start[events] == 0).any() else None for events in of_blocks]
+    block, kind = log.values().T
+    return starts_of_blocks(log.times() / time[1], block, kind, model.blocks)
+
+
+def starts_of_blocks(time: np.ndarray, block: np.ndarray, kind: np.ndarray, blocks: int) -> list[np.ndarray | None]:
+    """Return the times of the starts of each block among events, None for a block that never stops.
+
+    time, block, kind : of the events in their order; block from 1 on, kind 0 stop | 1 start
+    """
+    of_blocks = [block == 1 + n for n in range(blocks)]
+    return [time[events & (kind == 1)] if (kind[events] == 0).any() else None for events in of_blocks]
 
 
 def _frequency(values: np.ndarray, starts: np.ndarray | None) -> tuple[float, float]:
@@ -156,19 +164,23 @@ def _frequency(values: np.ndarray, starts: np.ndarray | None) -> tuple[float, fl
     return (frequency, error) if error <= LARGEST_ERROR * frequency else (math.nan, math.nan)
 
 
-def leading_frequency(values: np.ndarray, duration: float) -> float:
-    """Return the frequency of the highest peak of the spectrum of equidistant samples that last for `duration`.
+def leading_frequency(values: np.ndarray, duration: float, starts: np.ndarray | None = None) -> float:
+    """Return the frequency of the highest peak of the spectrum of equidistant samples of U' that last for `duration`.
 
     The mean is taken off, a Hann window put on, and the peak's place is that of the parabola through the logarithms of
-    the power around it. Of short slips it is their rate, see `slip_times`. NaN if the values are constant, if no peak
-    has a full cycle within the duration, and for fewer than three short slips.
+    the power around it. A frequency above half the rate of the samples has its image below it.
+
+    Of short slips it is their rate, that of the starts of the block in this duration, between which sticks of any
+    length count. `starts` is None for a block that never stops: its slips are told apart by samples, see `slip_times`.
+
+    NaN if the values are constant, if no peak has a full cycle within the duration, and for fewer than three short
+    slips.
     """
     if is_constant(values) or len(values) < 4:
         return math.nan
-    interval = duration / (len(values) - 1)
     if has_short_slips(values):
-        cycles = np.diff(slip_times(values))
-        return mean_rate(cycles) / interval if len(cycles) >= LEAST_CYCLES else math.nan
+        times = slip_times(values) * (duration / (len(values) - 1)) if starts is None else starts
+        return mean_rate(np.diff(times)) if len(times) > LEAST_CYCLES else math.nan
     return _highest_peak(values, duration)[0]
 
 
@@ -202,7 +214,8 @@ def has_short_slips(values: np.ndarray) -> bool:
 def slip_times(values: np.ndarray) -> np.ndarray:
     """Return the times, in samples, at which a velocity rises through its mean, in each slip for the first time.
 
-    A slip ends where the block rests, or if it never does, where the velocity falls nearly to its median.
+    A slip ends where the block rests in a sample, or if it never does, where the velocity falls nearly to its median.
+    Of a block that stops, the starts among the events are the better answer: samples miss shorter sticks.
     """
     above = values - values.mean()
     rests = values == 0.0

@@ -247,8 +247,12 @@ def new_observer(
     trajectory_time: np.ndarray | list[float] = (),  # type: ignore[assignment]
     section_only: bool = False,
     section: Section = SUM,
+    level: Sequence[float] = (),
 ) -> Observer:
-    """Return the observer of a run: J averaged over batches, and J and states at given times; see `Observer`."""
+    """Return the observer of a run: J averaged over batches, J and states at given times, its last times at levels.
+
+    See `Observer`.
+    """
     apart = float(model.sliding_offset[-1] - model.sliding_offset[0])
-    times = [np.asarray(values, dtype=float) for values in (edge, distance_time, trajectory_time)]
-    return Observer(model.blocks, apart, times[0], times[1], times[2], section_only, section.block, MOST_NUMBERS)
+    edges, at, through, levels = (np.asarray(x, dtype=float) for x in (edge, distance_time, trajectory_time, level))
+    return Observer(model.blocks, apart, edges, at, through, levels, section_only, section.block, MOST_NUMBERS)

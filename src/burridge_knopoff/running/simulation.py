@@ -12,6 +12,7 @@ from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.runner import Runner, new_observer
 from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.settling import LEVELS
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.running.trajectory import Trajectory, collect
 
@@ -28,7 +29,8 @@ def run(
 
     initial : initial state, or a state of an earlier run. In the second case the clock starts at the time of the state,
         and `start` is ignored
-    section_only : omit ⟨J⟩ and the least friction and spring force (NaN), which take an eighth of the time
+    section_only : omit ⟨J⟩, settling times and the least friction and spring force (NaN), which take an eighth of the
+        time
     stops_only : store only the stops in the event window and no other events, which halves the memory
 
     Raises ValueError, one line, for anything that the model or the solver does not allow.
@@ -93,7 +95,13 @@ def _runner(model: Model, settings: Settings, time: float, section_only: bool, s
         keep_events=settings.events != "none",
         stops_only=stops_only,
         observer=new_observer(
-            model, edge, np.minimum(distance_time, end), trajectory_time, section_only, settings.section
+            model,
+            edge,
+            np.minimum(distance_time, end),
+            trajectory_time,
+            section_only,
+            settings.section,
+            () if section_only else LEVELS,
         ),
         exponents=exponents,
     )

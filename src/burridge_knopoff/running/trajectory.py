@@ -13,6 +13,7 @@ from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.derivative import missing_derivative
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.settling import LEVELS, distance_rounding
 from burridge_knopoff.running.status import Status
 
 
@@ -26,12 +27,13 @@ class Trajectory:
 
     Positions are U − vτ (relative to the driver) and velocities are U', as in the paper's figures.
 
-    Times are in units of 1/ω. Shapes: `initially_slipping` (blocks,); `time`, `distance` (samples,); `event_time`,
-    `event_block`, `event_kind` (events,), `event_position`, `event_velocity` (events, blocks), and likewise
-    `earlier_event_…` for events without states; `crossing_…` (crossings,); `trajectory_time` (times,), `position`,
-    `velocity` (times, blocks); `lyapunov_exponent` and its error (exponents,). The first dimension of `batch_…` is the
-    batch. docs/data.md describes each array. Averages are NaN unless `status` is completed. Lyapunov exponents are also
-    NaN where perturbations have no linear growth; `missing_derivative` then says why, and is empty otherwise.
+    Times are in units of 1/ω. Shapes: `initially_slipping` (blocks,); `settling_time` (levels,); `time`, `distance`
+    (samples,); `event_time`, `event_block`, `event_kind` (events,), `event_position`, `event_velocity` (events,
+    blocks), and likewise `earlier_event_…` for events without states; `crossing_…` (crossings,); `trajectory_time`
+    (times,), `position`, `velocity` (times, blocks); `lyapunov_exponent` and its error (exponents,). The first
+    dimension of `batch_…` is the batch. docs/data.md describes each array. Averages and settling times are NaN unless
+    `status` is completed. Lyapunov exponents are also NaN where perturbations have no linear growth;
+    `missing_derivative` then says why, and is empty otherwise.
 
     >>> from burridge_knopoff import simulate
     >>> run = simulate("linearized", 0.08, "plus", transient=0, window=20, events="all")
@@ -52,6 +54,8 @@ class Trajectory:
     mean_distance: float
     mean_distance_error: float
     batch_mean_distance: np.ndarray = field(repr=False)
+    settling_time: np.ndarray = field(repr=False)
+    distance_rounding: float
     time: np.ndarray = field(repr=False)
     distance: np.ndarray = field(repr=False)
     earlier_event_time: np.ndarray = field(repr=False)
@@ -96,10 +100,15 @@ def collect(
     log = runner.log
     events = log.events.values()
     earlier_events = log.earlier_events.values()
+    final = runner.final(status)
+    rounding = distance_rounding(model, final)
     batch = measured["batch_integral"] * (settings.batches / settings.window)
     completed = status == Status.COMPLETED
     if not completed or runner.observer.section_only:
         batch[:] = math.nan
+    settled = np.full(len(LEVELS), math.nan)
+    if completed and not runner.observer.section_only:
+        settled = np.where(np.array(LEVELS) > rounding, measured["settling_time"], math.nan)
     lyapunov = _exponents(runner, settings, completed)
     speed = measured["highest_speed"]
     force = measured["lowest_force"]
@@ -113,12 +122,14 @@ def collect(
         begin_time=begun.time,
         end_time=runner.clock,
         initially_slipping=~begun.stuck,
-        final=runner.final(status),
+        final=final,
         event_count=log.count,
         step_count=runner.kernel.steps,
         mean_distance=float(batch.mean()),
         mean_distance_error=float(batch.std(ddof=1) / math.sqrt(len(batch))),
         batch_mean_distance=batch,
+        settling_time=settled,
+        distance_rounding=rounding,
         time=np.asarray(runner.observer.distance_time),
         distance=measured["distance"],
         earlier_event_time=log.earlier_events.times(),

@@ -96,7 +96,8 @@ VARIABLES = {
     "velocity_frequency": _V(
         (*_SLOT, "block"),
         "f8",
-        "frequency of U': in cycles per unit time, of the highest peak of the spectrum of U', or of short slips",
+        "frequency of U': in cycles per unit time, of the highest peak of the spectrum of U', or of short slips by "
+        "their starts",
         ALONG_COMMENT,
     ),
     "rounded_branch": _V(

@@ -40,18 +40,19 @@ CHAIN_VARIABLES = {
     "time": Variable(
         _STATE,
         "f8",
-        "synchronization time: time tau at which the synchronization distance was reached, NaN if it was not reached",
+        "synchronization time: first of the checks, 20 apart, at which the synchronization distance was reached, NaN "
+        "if it was not reached",
     ),
     "distance": Variable(
-        _STATE, "f8", "largest mirror distance: in the last quarter of the time limit, or at that time"
+        _STATE, "f8", "largest mirror distance: at the checks in the last quarter of the time limit, or at that time"
     ),
     "mean_distance": Variable(
-        _STATE, "f8", "mean mirror distance: in the last quarter of the time limit, or at that time"
+        _STATE, "f8", "mean mirror distance: at the checks in the last quarter of the time limit, or at that time"
     ),
     "pairs": Variable(
         _STATE,
         "i2",
-        "number of synchronized pairs: pairs of mirror blocks that stay synchronized in the last quarter "
+        "number of synchronized pairs: pairs of mirror blocks that are synchronized at all checks in the last quarter "
         "of the time limit",
     ),
     "transverse_exponent": Variable(

@@ -19,7 +19,7 @@ from burridge_knopoff.summaries.sentences import largest, lines_of, values_where
 SYNCHRONIZED = Variable(RUN, "i1", "synchronized: whether <J> is below the threshold", YES_OR_NO)
 _OF_RUNS = (
     *("mean_distance", "mean_distance_error", "least_friction", "window_least_friction", "window_least_spring_force"),
-    *("event_count", "status", "settling_time"),
+    *("event_count", "status", "settling_time", "distance_rounding"),
 )
 VARIABLES = {**{name: all_runs.VARIABLES[name] for name in _OF_RUNS}, "synchronized": SYNCHRONIZED}
 _NOWHERE = {"comment": "synchrony is not defined: the chain is not its own mirror image"}

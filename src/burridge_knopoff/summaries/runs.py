@@ -19,6 +19,7 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
 from burridge_knopoff.motion.period import SECTION, count_distinct, repetition_of
 from burridge_knopoff.motion.settings import MotionSettings
+from burridge_knopoff.running.settling import LEVELS
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.points import Grid, read_point
 from burridge_knopoff.summaries.sentences import RUN as LINE
@@ -27,22 +28,13 @@ from burridge_knopoff.summaries.sentences import incomplete, lines_of
 #: Dimensions of a scalar of all runs.
 RUN = ("law", "initial", "a")
 
-#: Levels of J that define settling: visible to the eye, visible in a figure, synchronization threshold, rounding error.
-LEVELS = (1.0e-2, 1.0e-3, 1.0e-6, 2.0e-15)
-LEVEL = Variable(("level",), "f8", "level of J", coordinate=True)
-
 _COPIED = {
     name: replace(item, dimensions=(*RUN, *item.dimensions))
     for name, item in POINT_VARIABLES.items()
-    if item.dimensions in ((), ("exponent",)) and not item.coordinate
+    if item.dimensions in ((), ("exponent",), ("level",)) and not item.coordinate
 }
 VARIABLES = {
     **_COPIED,
-    "settling_time": Variable(
-        (*RUN, "level"),
-        "f8",
-        "settling time of J: earliest sampled time tau after which all samples of J are below the level",
-    ),
     "section_count": Variable(
         RUN, "i4", "number of section points: distinct W' at upward crossings of W = 0 in the second half of the window"
     ),
@@ -106,16 +98,15 @@ def summarize(grid: Grid, period_tolerance: float, longest_period: float) -> xar
             values |= {f"section_velocity_{name}": getattr(upward, name)() for name in ("mean", "min", "max")}
         values["mirror_symmetric"] = grid.model_of(law, *names).chain.is_mirror_symmetric
         if run["status"] == Status.COMPLETED:
-            values["settling_time"] = settling_time(run["time"], run["distance"], LEVELS)
             repetition = repetition_of(run, motion.scaled_to_velocity(float(run["v"])))
             values |= {f"repetition_{name}": value for name, value in vars(repetition).items()}
         return values
 
     exponents = next(iter(grid.settings.values())).exponent_count(grid.chain)
-    read = [*_COPIED, *SECTION, "v", "time", "distance"]
+    read = [*_COPIED, *SECTION, "v"]
     values = over_runs(grid, VARIABLES, read, scalars, exponent=exponents, level=len(LEVELS))
     parameters = grid.axes()
-    coordinates = {**parameters, **axes({"level": LEVEL}, level=LEVELS)}
+    coordinates = {**parameters, **axes({"level": POINT_VARIABLES["level"]}, level=LEVELS)}
     # A parameter of the grid has a coordinate of its own.
     if "v" not in parameters:
         coordinates["v"] = ((), grid.models["v"], POINT_VARIABLES["v"].all_attributes())
@@ -124,15 +115,6 @@ def summarize(grid: Grid, period_tolerance: float, longest_period: float) -> xar
         name: replace(item, dimensions=(*parameters, *item.dimensions[len(RUN) :])) for name, item in VARIABLES.items()
     }
     return summary("Scalars of all runs", variables, values, coordinates, about, module=__name__)
-
-
-def settling_time(time: np.ndarray, distance: np.ndarray, levels: Sequence[float]) -> list[float]:
-    """Return, for each level, the earliest time after which all samples are below it, NaN if the last one is not."""
-    settled = []
-    for level in levels:
-        first = len(distance) - int(np.argmin(np.append((distance < level)[::-1], False)))
-        settled.append(float(time[first]) if first < len(distance) else np.nan)
-    return settled
 
 
 def digest(data: xarray.Dataset) -> str:

@@ -12,7 +12,7 @@ import xarray
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.motion.frequency import leading_frequency
+from burridge_knopoff.motion.frequency import leading_frequency, starts_of_blocks
 from burridge_knopoff.motion.jumps import event_jumps
 from burridge_knopoff.periodic_orbits.grazing_distances import longest_spacing
 from burridge_knopoff.running.ensemble import new_ensemble
@@ -42,7 +42,7 @@ VARIABLES = {
         _BLOCK,
         "f8",
         "frequency of U': in cycles per unit time, of the highest peak of the spectrum of U', or of "
-        "short slips, over the time of events with states",
+        "short slips by their starts, over the time of events with states",
         {"ancillary_variables": "velocity_frequency_error", "comment": RECOMPUTED},
     ),
     "velocity_frequency_error": Variable(
@@ -55,11 +55,14 @@ VARIABLES = {
         "of events with states",
         {"comment": RECOMPUTED},
     ),
-    "least_velocity": Variable(_BLOCK, "f8", "smallest velocity U': among the samples of the stored trajectory"),
+    "least_velocity": Variable(
+        _BLOCK, "f8", "smallest velocity U': among the samples of the stored trajectory and the events in its time"
+    ),
     "position_amplitude": Variable(
         _BLOCK,
         "f8",
-        "amplitude of the position: half its range relative to the driver among the samples of the stored trajectory",
+        "amplitude of the position: half its range relative to the driver in the stored trajectory, between samples by "
+        "the cubics through positions and velocities",
     ),
     "stop_jump": Variable(
         RUN, "f8", "smallest jump of U'' at a stop: of the block that stops, among the events with states"
@@ -101,14 +104,16 @@ def _cycles(
 ) -> dict[str, Any]:
     """Return the values of VARIABLES for a completed run of a model."""
     time, block, kind = all_events(run)
-    record, duration = long_velocity(run, model, transient)
+    record, begin, duration = long_velocity(run, model, transient)
+    during = (time >= begin) & (time <= begin + duration)
+    starts = starts_of_blocks(time[during], block[during], kind[during], model.blocks)
     blocks = []
     for number in range(1, model.blocks + 1):
         of_block = block == number
         stops = time[of_block & (kind == STOP) & (time >= transient)]
         ends_stuck = bool(run["velocity"][-1, number - 1] == 0.0)
         cycle, error = cycle_time(stops, batches)
-        frequency = leading_frequency(record[:, number - 1], duration)
+        frequency = leading_frequency(record[:, number - 1], duration, starts[number - 1])
         blocks.append(
             {
                 "stop_rate": len(stops) / window,
@@ -124,8 +129,8 @@ def _cycles(
     return {
         **{name: [values[name] for values in blocks] for name in blocks[0]},
         "velocity_correlation": correlation(record[:, 0], record[:, -1]),
-        "least_velocity": run["velocity"].min(axis=0),
-        "position_amplitude": 0.5 * np.ptp(run["position"], axis=0),
+        "least_velocity": least_velocity(run, time, block),
+        "position_amplitude": position_amplitude(run["trajectory_time"], run["position"], run["velocity"] - model.v),
         **_smallest_jumps(run, model),
     }
 
@@ -140,8 +145,38 @@ def _smallest_jumps(run: Mapping[str, np.ndarray], model: Model) -> dict[str, fl
     }
 
 
-def long_velocity(run: Mapping[str, np.ndarray], model: Model, transient: float) -> tuple[np.ndarray, float]:
-    """Return the longest available series of equidistant velocities U', shape (n, blocks), and its duration.
+def least_velocity(run: Mapping[str, np.ndarray], time: np.ndarray, block: np.ndarray) -> np.ndarray:
+    """Return the smallest U' of each block among the samples of the stored trajectory and the events in its time.
+
+    time, block : of all events of the run. A stick between two samples has no sample, but a stop, at which U' is 0.
+    """
+    least = run["velocity"].min(axis=0)
+    during = (time >= run["trajectory_time"][0]) & (time <= run["trajectory_time"][-1])
+    stopped = np.isin(np.arange(1, len(least) + 1), block[during])
+    return np.where(stopped, np.minimum(least, 0.0), least)
+
+
+def position_amplitude(time: np.ndarray, position: np.ndarray, rate: np.ndarray) -> np.ndarray:
+    """Return half the range of each of several motions, shape (blocks,), from equidistant samples of x and x'.
+
+    A position turns between two samples where x' changes its sign: there it is that of the cubic through both.
+    """
+    step = np.diff(time)[:, None]
+    first, last = step * rate[:-1], step * rate[1:]
+    change = np.diff(position, axis=0)
+    # x' = first + 2 b s + c s² on the interval, s from 0 to 1; the root of a change of sign, without cancellation.
+    b, c = 3.0 * change - 2.0 * first - last, 3.0 * (first + last - 2.0 * change)
+    turns = first * last < 0.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        root = np.sqrt(np.maximum(b * b - first * c, 0.0))
+        s = np.where(turns, -first / (b + np.copysign(root, -first)), 0.0)
+    between = position[:-1] + s * (first + s * (b + s * c / 3.0))
+    values = np.concatenate([position, between])
+    return 0.5 * np.ptp(values, axis=0)
+
+
+def long_velocity(run: Mapping[str, np.ndarray], model: Model, transient: float) -> tuple[np.ndarray, float, float]:
+    """Return the longest available series of equidistant velocities U', shape (n, blocks), its begin and duration.
 
     run : arrays of a point file of the model; transient : of the run
 
@@ -151,12 +186,12 @@ def long_velocity(run: Mapping[str, np.ndarray], model: Model, transient: float)
     time, kept = run["event_time"], float(np.ptp(run["trajectory_time"]))
     stops = np.flatnonzero((run["event_kind"] == STOP) & (time >= transient))
     if not len(stops) or time[-1] - time[stops[0]] <= kept:
-        return run["velocity"], kept
+        return run["velocity"], float(run["trajectory_time"][0]), kept
     first, duration = stops[0], float(time[-1] - time[stops[0]])
     position, velocity = run["event_position"][first] - model.sliding_offset, run["event_velocity"][first]
     instants = np.linspace(0.0, duration, math.ceil(duration / longest_spacing(model.chain)) + 1)
     states = (position[None], velocity[None], velocity[None] == 0.0)
-    return new_ensemble(model).run(*states, instants.tolist())["velocity"][0], duration
+    return new_ensemble(model).run(*states, instants.tolist())["velocity"][0], float(time[first]), duration
 
 
 def cycle_time(stops: np.ndarray, batches: int) -> tuple[float, float]:

@@ -281,22 +281,24 @@ def minus_distance_vanishes(
     Zero means below the threshold of synchrony, for good. The claim holds loosely if it takes up to a quarter
     longer, `loose` times as long.
 
-    J falls exponentially and is never 0. When it reaches the rounding error, the lowest level, depends on the
-    arithmetic, so that time is only reported.
+    J falls exponentially and is never 0. A level of rounding is not judged: when J is below it depends on the
+    arithmetic.
     """
     runs = evidence.at(evidence.state_summary("mean_distance", initial), at).sel(law=law)
     if level not in runs["level"].values:
         raise NotTestableError(f"mean_distance.nc has no settling time for J < {level:g}")
     if not np.isfinite(runs["mean_distance"].item()):
         raise NotTestableError(f"the run from {initial} at a = {at:g} under the {law} law did not complete")
-    measured = [
-        Measured(f"time τ from which on J < {height:g}", float(value))
-        for height, value in zip(runs["level"].values, runs["settling_time"].values, strict=True)
+    if not level > (rounding := runs["distance_rounding"].item()):
+        raise NotTestableError(f"J < {level:g} is no more than rounding, {rounding:.1g}")
+    runs = runs.sel(level=runs["level"] > rounding)
+    times = dict(zip(runs["level"].values.tolist(), runs["settling_time"].values.tolist(), strict=True))
+    measured = [Measured(f"time τ from which on J < {height:g}", time) for height, time in times.items()]
+    settled = times[level]
+    reached = [
+        f"{height:g} from τ = {time:.2f} on" for height, time in times.items() if height <= level and np.isfinite(time)
     ]
-    settled = float(runs["settling_time"].sel(level=level).item())
-    reached = runs["level"].values[(runs["level"].values <= level) & np.isfinite(runs["settling_time"].values)]
-    times = [f"{height:g} from τ = {runs['settling_time'].sel(level=height).item():g} on" for height in reached]
-    text = f"stays below {join_words(times)}" if np.isfinite(settled) else f"does not stay below {level:g}"
+    text = f"stays below {join_words(reached)}" if np.isfinite(settled) else f"does not stay below {level:g}"
     verdict = HOLDS if settled <= by else LOOSELY if settled <= loose * by else FAILS
     rate, expected = _decay_rate(runs, level), _transverse_rate(evidence, law, at)
     decay = ""
