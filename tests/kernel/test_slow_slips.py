@@ -183,3 +183,19 @@ def test_a_slip_that_stops_late_removes_all_perturbations():
     model = damped_block(1, 1.0, 1.0, 1.0, 0.005)
     spectrum = event_exponents(model, resting(model, [-0.9]), 500.0, begin=50.0, count=1)
     assert np.isneginf(spectrum.exponent).all()
+
+
+@pytest.mark.parametrize("share", [0.5, 0.05, 0.01, 0.005, 5e-4, 5e-6, 0.0, -0.2])
+@GROUPS
+def test_a_block_without_a_spring_to_the_driver_stops_below_critical_damping(share, groups):
+    """Behind a driver that moves too: its neighbour loads it again, and only above critical damping it slips on."""
+    drag = (0.0, 2.0 * (1.0 - share) + WEAKENING)
+    model = Model(Chain(2, coupling=1.0, pulling=(1.0, 0.0), pulling_damping=drag), LAW, 1e-4)
+    start = resting(model, (0.0, -0.5))
+    changes = []
+    for loading in ("quasistatic", "steady"):
+        _, runner, _ = record_catalogue(model, start, 4.0 / model.v, groups, loading=loading)
+        _, block, kind = runner.events()
+        changes.append(list(zip(block.tolist(), kind.tolist(), strict=True)))
+    assert changes[0] == changes[1]
+    assert ((1, 0) in changes[0]) == (share > 0.0)

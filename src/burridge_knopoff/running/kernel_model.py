@@ -13,6 +13,9 @@ UNPULLED = 1e-9
 # Rounding of forces, relative to thresholds and springs, and a slow slip, relative to the speed of slips.
 ROUNDING, SLOW = 1e-13, 1e-6
 
+# Damping that is below critical by no more than this share is critical within rounding.
+CRITICAL = 1e-14
+
 
 def kernel_model(model: Model, loading: str = "steady") -> KernelModel:
     """Return the chain, friction law and driver of a model for the kernel; loading : see `Runner`."""
@@ -50,10 +53,11 @@ def creep_speed(model: Model, loading: str) -> float:
     """Return the speed of rounding: a slip that can creep stops below minus this; 0 if no slip of the model can creep.
 
     A driver that moves pulls blocks that creep, but for those without a spring to it. The speed of those tends to 0, as
-    that of all blocks behind a driver at rest does, and must not fall below 0 by rounding of forces.
+    that of all blocks behind a driver at rest does, and must not fall below 0 by rounding of forces. Below critical
+    damping it may: there the block stops.
     """
     chain = model.chain
-    if not _can_creep(model) or (loading == "steady" and (chain.driving > UNPULLED).all()):
+    if not _can_creep(model) or (loading == "steady" and not _has_unpulled_creep(model)):
         return 0.0
     return ROUNDING * float((np.maximum(chain.thresholds, chain.diagonal) / _resistance(model)).min())
 
@@ -71,6 +75,18 @@ def rest_speed(model: Model) -> float:
 
 def _can_creep(model: Model) -> bool:
     return model.chain.is_damped or float(model.law.slope(0.0)) > 0.0
+
+
+def _has_unpulled_creep(model: Model) -> bool:
+    """Return whether blocks without a spring to the driver can creep; if two of them are neighbours, they may."""
+    chain = model.chain
+    unpulled = chain.driving <= UNPULLED
+    start, index, _, _ = chain.neighbours
+    if (np.repeat(unpulled, np.diff(start)) & unpulled[index]).any():
+        return True
+    damping = chain.damping_diagonal + chain.thresholds * float(model.law.slope(0.0))
+    critical = 2.0 * np.sqrt(chain.diagonal * chain.masses)
+    return bool((unpulled & (damping >= (1.0 - CRITICAL) * critical)).any())
 
 
 def _resistance(model: Model) -> np.ndarray:

@@ -98,11 +98,11 @@ def branch_locked(
             third, error = (detuned[key].values[:, 2] for key in ("detuned_exponent", "detuned_exponent_error"))
             deviation = _deviation_from_modes(detuned)
             one_frequency = has_one_frequency(frequency) & (third < -STANDARD_ERRORS * error)
-            locked = one_frequency & (deviation > mode_deviation)
-            shares[ONE_FREQUENCY][name], shares[NO_MODE][name] = count_share(one_frequency), count_share(locked)
+            is_locked = one_frequency & (deviation > mode_deviation)
+            shares[ONE_FREQUENCY][name], shares[NO_MODE][name] = count_share(one_frequency), count_share(is_locked)
             measured += [
                 Measured(f"share of a at which the end blocks keep one frequency, {name}", one_frequency.mean()),
-                Measured(f"share of a at which they are locked, {name}", locked.mean()),
+                Measured(f"share of a at which they are locked, {name}", is_locked.mean()),
                 Measured(
                     f"largest difference of their frequencies, {name}", np.ptp(frequency[:, [0, -1]], axis=1).max()
                 ),
@@ -112,7 +112,7 @@ def branch_locked(
             where += describe_where(
                 "the end blocks do not keep one frequency with a stable relative phase", grid, ~one_frequency, name
             )
-            where += describe_where("the end blocks are locked", grid, locked, name)
+            where += describe_where("the end blocks are locked", grid, is_locked, name)
         numbers, texts = _locked_to_middle(of_law, a, law)
         measured, where = measured + numbers, where + texts
     verdicts = {
