@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import binomtest
 
 from burridge_knopoff import (
     Chain,
@@ -114,6 +115,9 @@ def test_each_side_leads_to_one_of_the_two(between_mirror_images):
     assert attractors[first].partner == second
     assert edge.reached_count.sum(axis=1).tolist() == [100, 100]
     assert not edge.has_crossing
+    assert edge.crossing_count.tolist() == [0, 0]
+    interval = binomtest(0, 200).proportion_ci(0.95, "wilson")
+    assert edge.crossing_share == pytest.approx((0.0, interval.low, interval.high), abs=1e-12)
 
 
 def test_states_exactly_between_mirror_images_reach_neither(between_mirror_images):
@@ -181,6 +185,7 @@ def test_a_torus_on_a_fractal_boundary(near_loss):
     assert (edge.kind, edge.symmetry, edge.has_crossing) == (MotionKind.QUASIPERIODIC, Symmetry.SYMMETRIC, True)
     assert edge.exponent[0] == pytest.approx(0.0128, abs=4.0 * edge.exponent_error[0])
     beyond = edge.reached_count[[0, 1], [second, first]]
+    assert edge.crossing_count.tolist() == beyond.tolist()
     assert beyond == pytest.approx(500 * np.array([0.0202, 0.0264]), abs=3.0 * np.sqrt(500 * 0.0264))
 
 

@@ -375,10 +375,17 @@ CASES: list[tuple[str, str, Alteration]] = [
     # Blocks that only springs move keep one frequency too, but then three exponents are 0.
     ("branch_locked", FAILS, alter("rotation", "detuned_exponent", -0.001)),
     # If they move in one mode they have one frequency, but are not locked.
-    ("branch_locked", READING, alter("rotation", "detuned_mode_share", 0.97)),
-    ("branch_locked", READING, alter("rotation", "detuned_mode_share", 0.97, branch=2, law="linearized")),
-    ("branch_locked", HOLDS, alter("rotation", "detuned_mode_share", 0.97, detuning=0.1)),
-    ("branch_locked", FAILS, both(parted(branch=1), alter("rotation", "detuned_mode_share", 0.97, branch=2))),
+    ("branch_locked", READING, alter("rotation", "detuned_end_ratio", 0.55)),
+    ("branch_locked", READING, alter("rotation", "detuned_end_ratio", 0.55, branch=2, law="linearized")),
+    ("branch_locked", HOLDS, alter("rotation", "detuned_end_ratio", 0.55, detuning=0.1)),
+    ("branch_locked", FAILS, both(parted(branch=1), alter("rotation", "detuned_end_ratio", 0.55, branch=2))),
+    # The ratio alone does not make a mode, nor does the energy.
+    (
+        "branch_locked",
+        HOLDS,
+        both(alter("rotation", "detuned_end_ratio", 0.5), alter("rotation", "detuned_end_phase", 150.0)),
+    ),
+    ("branch_locked", HOLDS, alter("rotation", "detuned_mode_share", 0.97)),
     # They need not be locked to the middle block.
     ("branch_locked", HOLDS, locked(0)),
     ("branch_locked", HOLDS, locked(-1)),

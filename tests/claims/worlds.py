@@ -326,7 +326,8 @@ def _rotation() -> xarray.Dataset:
         "detuned_exponent_error": ((*axes, "exponent"), detuned([0.0005] * 3)),
         "detuned_mode_share": ((*axes, "mode"), detuned([0.2, 0.8, 0.0])),
         "detuned_end_ratio": (axes, detuned([1.0])[..., 0]),
-        "mode_end_ratio": (("detuning", "mode"), np.ones((3, 1)) * [1.2, -0.8, 0.9]),
+        "detuned_end_phase": (axes, detuned([180.0])[..., 0]),
+        "mode_end_ratio": (("detuning", "mode"), np.array([[1.1, -0.8, 0.9], [1.4, -0.5, 0.6], [3.0, -0.3, 0.2]])),
     }
     coordinates = {"law": list(LAWS), "branch": [1, 2], "detuning": [0.1, 0.3, 0.8], "block": BLOCKS}
     return xarray.Dataset(data, coordinates, {"detuned_transient": 4000.0, "detuned_window": 4000.0})

@@ -126,7 +126,7 @@ def test_the_crisis_names_the_saddle(merging, tmp_path: Path):
     whole = open_summary(tmp_path / "edges.nc")
     words = edges_in_words(whole).splitlines()
     assert len(words) == 2 + 1 + len(edge_states)
-    assert words[0] == "nonlinear: 1 edge state at 1 value of a: 1 synchronized; none fractal."
+    assert words[0].startswith("nonlinear: 1 edge state at 1 value of a: 1 synchronized; undecided at this depth")
     assert words[1].startswith(f"linearized: {len(edge_states)} edge states at 1 value of a: ")
     met = edges.saddle_at_crisis(whole, "linearized", 0.1773)
     assert met["stops"].tolist() == [1, 1, 1]

@@ -67,7 +67,7 @@ def exponent_count(model):
 def case(model, monkeypatch):
     """Return the input of `bits.cpp`: settings, model, states."""
     monkeypatch.setattr("burridge_knopoff.running.kernel_model.KernelModel", dict)
-    *arrays, value, slope, linear, rate, steepest, v, symmetric, creep_speed = kernel_model(model).values()
+    *arrays, value, slope, linear, rate, steepest, v, symmetric, creep_speed, _ = kernel_model(model).values()
     monkeypatch.undo()
     stuck, single, many = starts(model)
     settings = [exponent_count(model).matrix().shape[1], COUNT, STEP]

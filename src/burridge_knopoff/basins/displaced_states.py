@@ -36,21 +36,23 @@ class DisplacedStates:
         self.generator = np.random.default_rng(settings.seed)
         self._beyond: list[tuple[Lines, float]] = []
 
-    def counts(self) -> np.ndarray:
-        """Return the number of states that reach each attractor, shape (2, attractors).
+    def counts(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the numbers of states that reach each attractor, (2, attractors), and that cross the boundary, (2,).
 
-        The logarithm of the displacements is uniform, so that they cover all of the unstable manifold.
+        The latter reach an attractor of the other side. The logarithm of the displacements is uniform, so that they
+        cover all of the unstable manifold.
         """
         low, high = np.log(DISPLACEMENTS)
-        counts = []
+        counts, beyond = [], []
         for side in (-1.0, 1.0):
             amount = side * np.exp(self.generator.uniform(low, high, self.samples))
             lines = self._lines()
             labels, _ = self._label(lines.displace(amount))
             counts.append(np.bincount(labels[labels != UNDETERMINED], minlength=len(self.track.attractors)))
             is_beyond = (labels != UNDETERMINED) & (self.track.on_first_side[labels] != (side < 0.0))
+            beyond.append(np.count_nonzero(is_beyond))
             self._beyond += [(lines[np.array([k])], amount[k]) for k in np.flatnonzero(is_beyond)]
-        return np.array(counts)
+        return np.array(counts), np.array(beyond)
 
     def crossings(self) -> Iterator[tuple[ChainState, ChainState]]:
         """Yield a state on the first and one on the second side for each state that `counts` found beyond the boundary.

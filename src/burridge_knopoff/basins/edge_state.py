@@ -29,6 +29,7 @@ from burridge_knopoff.basins.edge_tracking import SEPARATED_DISTANCE, EdgeTrack,
 from burridge_knopoff.basins.settings import EDGES, EdgeSettings
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
+from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.motion.kind import MotionKind, is_zero_exponent, motion_from_period
 from burridge_knopoff.motion.limit_cycle import orbit_of_events
 from burridge_knopoff.motion.section_returns import Returns, returns_of
@@ -80,9 +81,10 @@ class EdgeState:
         with its standard error: for a saddle orbit the period over the logarithm of the multiplier, for a saddle torus
         the reciprocal of the largest exponent, for a chaotic saddle the mean over displaced states
     reached_count : number of displaced states that reach each attractor, a row for each side, shape (2, attractors)
-    has_crossing : whether states displaced to one side reach an attractor of the other, across a part of the boundary
-        that leads back to this set, for one of the first few such states: its unstable manifold crosses its stable one,
-        and the boundary is fractal
+    crossing_count : number of states displaced to each side that reach an attractor of the other, shape (2,)
+    has_crossing : whether the part of the boundary that the first few of them cross leads back to this set: its
+        unstable manifold crosses its stable one, and the boundary is fractal. False does not exclude it: a crossing by
+        a smaller share of states than `crossing_share` resolves is missed
     returns : states of the settled trajectory at stops of one block, shape (n, 2 blocks)
     duration : time for which the boundary was followed
 
@@ -107,6 +109,7 @@ class EdgeState:
     lifetime: float
     lifetime_error: float
     reached_count: np.ndarray
+    crossing_count: np.ndarray
     has_crossing: bool
     returns: np.ndarray
     duration: float
@@ -120,6 +123,11 @@ class EdgeState:
     def multiplier(self) -> np.ndarray:
         """The Floquet multipliers of the saddle orbit, the largest modulus first; empty if there is no such orbit."""
         return np.zeros(0, dtype=complex) if self.orbit is None else multipliers(self.orbit).whole
+
+    @property
+    def crossing_share(self) -> tuple[float, float, float]:
+        """The share of the displaced states that cross the boundary, and the ends of its 95 % Wilson interval."""
+        return fraction_interval(int(self.crossing_count.sum()), int(self.reached_count.sum()))
 
     @property
     def sides(self) -> tuple[set[int], set[int]]:
@@ -239,7 +247,7 @@ def _measure(track: EdgeTrack, orbit: PeriodicOrbit | None, settings: EdgeSettin
     section = returns_of(model, track.duration, stops[:, 0], lambda chosen: stops[chosen, 2:])
     exponent, error = _exponents(track.growth(since))
     displaced = DisplacedStates(track, since, settings)
-    reached = displaced.counts()
+    reached, crossing = displaced.counts()
     mean = _mean_distance(track, orbit)
     crossings = islice(displaced.crossings(), CROSSINGS)
     has_crossing = any(_leads_back(track, pair, settings.duration, mean) for pair in crossings)
@@ -260,6 +268,7 @@ def _measure(track: EdgeTrack, orbit: PeriodicOrbit | None, settings: EdgeSettin
         mean,
         *lifetime,
         reached,
+        crossing,
         has_crossing,
         section.returns if section is not None else np.zeros((0, 2 * model.blocks)),
         track.duration,

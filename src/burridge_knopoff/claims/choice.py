@@ -151,8 +151,8 @@ Samples = Annotated[
 StateShare = Annotated[float, Scaled("the required share of states", percent=True, of_one=True)]
 LooseShare = Annotated[float, Scaled("the share for “holds loosely”", percent=True, of_one=True)]
 Correlation = Annotated[float, Scaled("the correlation that counts as antiphase", of_one=True)]
-ModeShare = Annotated[
-    float, Scaled("the share of the energy that makes an oscillation one of a mode", percent=True, of_one=True)
+ModeDeviation = Annotated[
+    float, Scaled("the deviation from a mode, in amplitude ratio and phase, up to which the motion is one of it")
 ]
 Close = Annotated[
     float, Along("the phase difference up to which phases are close", "phases", "phase_difference", is_bound=True)

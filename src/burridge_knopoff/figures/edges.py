@@ -20,9 +20,9 @@ INPUTS = ("attractors", "edges")
 CAPTION = """\
 The motion on which trajectories on the boundaries between basins settle, versus a for each law. Top: ⟨J⟩ of the
 attractors (grey) and of the edge states, in the colour of their kind of motion. Diamonds: the unstable manifold crosses
-the stable one, and the boundary is therefore fractal; circles: no displaced state shows a crossing. Lines: saddle
-orbits, continued in a for as long as they have one unstable direction. Bottom: the mean time for which trajectories
-stay near an edge state.
+the stable one, and the boundary is therefore fractal. Circles: none of the displaced states, whose number the legend
+gives, shows this; a crossing by fewer of them is not excluded. Lines: saddle orbits, continued in a for as long as they
+have one unstable direction. Bottom: the mean time for which trajectories stay near an edge state.
 """
 
 SADDLE_COLOR = "#555555"
@@ -87,6 +87,7 @@ def _edges(panel: Axes, edges: xarray.Dataset, name: str) -> None:
 
 def _handles(edges: xarray.Dataset) -> list[Line2D]:
     kinds = np.unique(edges["kind"].values).tolist()
+    depth = np.maximum(edges["reached_count"].values, 0).sum(axis=(1, 2)).max(initial=0)
     style: Any = {"linestyle": "", "markeredgecolor": "0.3", "markeredgewidth": 0.3}
     return [
         *(
@@ -95,7 +96,7 @@ def _handles(edges: xarray.Dataset) -> list[Line2D]:
         ),
         *(
             Line2D([], [], marker=MARKS[crossing][0], markersize=4.0, color="0.6", label=words, **style)
-            for crossing, words in ((0, "no crossing seen"), (1, "crossing: fractal boundary"))
+            for crossing, words in ((0, f"no crossing among {depth} states"), (1, "crossing: fractal boundary"))
             if crossing in edges["has_crossing"].values
         ),
         Line2D([], [], color=SADDLE_COLOR, linewidth=0.6, label="saddle orbits"),

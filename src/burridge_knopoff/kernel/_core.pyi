@@ -70,6 +70,7 @@ class KernelModel:
         v: float,
         symmetric: bool,
         creep_speed: float = ...,
+        rest_speed: float = ...,
     ) -> None: ...
     @property
     def fastest(self) -> float:

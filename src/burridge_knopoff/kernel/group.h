@@ -23,7 +23,7 @@ struct Group {
     double observed = 0.0;  // time up to which the piece has been observed
     double followed = 0.0;  // time of the piece to which the perturbations of its blocks belong
     bool planned = false, event = false;
-    bool resting = false;  // whether the blocks stick or creep at the end of the piece, see Run::plan
+    bool resting = false;  // whether the blocks stick or slip slowly at the end of the piece, see Run::plan
     int section = -1;      // lane of W in g
     int side = 0;          // the observer's side at the start of the piece
     uint64_t version = 0;
@@ -59,12 +59,12 @@ struct Group {
         return true;
     }
 
-    // Whether all blocks stick at a time of the piece, or slip so slowly that they creep; fastest : see State::rests
-    bool rests_at(double t, double fastest) const {
+    // Whether all blocks stick at a time of the piece, or slip slowly; limit, fastest : see State::rests
+    bool rests_at(double t, double limit, double fastest) const {
         const vec at = Blocks::splat(t);
         for (int c = 0; c < layout.columns; c++) {
             const mask rests =
-                state.rests(c, series.value(series.velocity, c, at), series.acceleration(c, at), fastest);
+                state.rests(c, series.value(series.velocity, c, at), series.acceleration(c, at), limit, fastest);
             if (any(layout.present[c] & ~rests)) return false;
         }
         return true;

@@ -62,8 +62,7 @@ int Run::run_groups() {
             return COMPLETED;
         }
         take_next(coming);
-        const bool halting = halting_block >= 0 && group_of[halting_block] >= 0 &&
-                             groups[group_of[halting_block]]->state.slip.lane(lane_of[halting_block]) != 0.0;
+        const bool halting = halting_block >= 0 && direction_of(halting_block) != 0.0;
         if (moving) observe_all(at, at);
         if (!process()) return DIVERGED;
         follow_groups();

@@ -25,9 +25,11 @@ struct Model {
     Law law;
     double v;
     bool symmetric;  // whether a block that is pulled below −θ_i slips backward
-    // Speed below which a slip creeps: unless the driver pulls the block on, its speed tends to 0 and rounding decides
-    // the sign. A block stops where its speed has fallen below minus this. 0 if no slip can creep.
+    // A block that can creep stops where its speed has fallen below minus this: unless the driver pulls the block on, its
+    // speed tends to 0 and rounding decides the sign. 0 if no slip can creep.
     double creep_speed;
+    // Under quasi-static loading, speed below which a slip is slow: the friction is then linear in the speed.
+    double rest_speed;
 
     bool drops() const { return law.at_rest < 1.0; }
     double coincidence() const { return COINCIDENCE * springs.unit; }

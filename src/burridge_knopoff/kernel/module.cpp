@@ -59,7 +59,8 @@ nb::ndarray<nb::numpy, T> taken(std::vector<T> &values) {
 Model *new_model(Numbers diagonal, Numbers driving, Numbers threshold, Numbers sliding_force, Numbers mass,
                  Array1<int64_t> start, Array1<int64_t> neighbour, Numbers strength, Numbers damping,
                  Numbers damping_diagonal, Numbers damping_load, Array2<int64_t> operations, Table constants, int value,
-                 int slope, bool linear, double rate, double steepest, double v, bool symmetric, double creep_speed) {
+                 int slope, bool linear, double rate, double steepest, double v, bool symmetric, double creep_speed,
+                 double rest_speed) {
     auto model = std::make_unique<Model>();
     Springs &springs = model->springs;
     springs.blocks = int(diagonal.size());
@@ -87,6 +88,7 @@ Model *new_model(Numbers diagonal, Numbers driving, Numbers threshold, Numbers s
     model->v = v;
     model->symmetric = symmetric;
     model->creep_speed = creep_speed;
+    model->rest_speed = rest_speed;
     return model.release();
 }
 
@@ -201,7 +203,7 @@ NB_MODULE(_core, m) {
         .def(nb::new_(&new_model), "diagonal"_a, "driving"_a, "threshold"_a, "sliding_force"_a, "mass"_a, "start"_a,
              "neighbour"_a, "strength"_a, "damping"_a, "damping_diagonal"_a, "damping_load"_a, "operations"_a,
              "constants"_a, "value"_a, "slope"_a, "linear"_a, "rate"_a, "steepest"_a, "v"_a, "symmetric"_a,
-             "creep_speed"_a = 0.0)
+             "creep_speed"_a = 0.0, "rest_speed"_a = 0.0)
         .def_prop_ro(
             "fastest", [](const Model &model) { return model.springs.fastest; },
             "Bound on the angular frequencies of slipping blocks.")

@@ -162,7 +162,8 @@ Block Run::block_in(Group &group, int lane, const Clock &loaded) const {
             group.start,
             loaded,
             block.creeps,
-            block.creep};
+            block.creep,
+            block.fades};
 }
 
 // Store the states of a group's blocks, and dissolve the group.
@@ -292,6 +293,11 @@ int Run::run_whole() {
     for (;;) {
         if (const int reason = blocked()) return reason;
         if (loading > 0.0 && !group.planned && rests(group)) {
+            const bool slips = halting_block >= 0 && group.state.slip.lane(halting_block) != 0.0;
+            if (stop_slow(group)) {
+                if (slips && group.state.slip.lane(halting_block) == 0.0) return HALTED;
+                continue;
+            }
             begin_creep(group);
             if (load_next(group)) continue;
             if (exponents.running) exponents.follow(group.slip(), load.time, true);

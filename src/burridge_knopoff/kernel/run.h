@@ -23,6 +23,8 @@ struct Block {
     // Whether the block creeps, and its displacement relative to that of the driver, otherwise 0.
     bool creeps = false;
     double creep = 0.0;
+    // Whether the block slips slowly and waits for a stop; then `acceleration` is more accurate than the forces.
+    bool fades = false;
 
     template <class A>
     void archive(A &values) {
@@ -62,6 +64,8 @@ class Run {
   public:
     // Number of blocks from which on groups are faster than a single group.
     static constexpr int MANY = 24;
+    // Velocities of a set of slow slips that are below 0 by less than this share of the largest are rounding.
+    static constexpr double NOISE = 1e-7;
     // Longest time between orthonormalisations, which are also needed without events, in units of the shortest.
     static constexpr double LONGEST_FOLLOW = 4.0;
     // Factor exp(−DECAY) by which dashpots may shorten a perturbation in the shortest time.
@@ -214,6 +218,10 @@ class Run {
     // Creep, in creep.cpp.
     void end_at_rest(Group &group);
     bool rests(const Group &group) const;
+    std::vector<std::vector<int>> slipping_sets(const Group &group) const;
+    double fade(Group &group);
+    bool stop_slow(Group &group);
+    void balance(Group &group, const std::vector<int> &members);
     void begin_creep(Group &group);
     Group *release(Group &group);
     std::vector<double> solve(const std::vector<int> &members, const std::vector<double> &right);

@@ -130,13 +130,14 @@ struct State {
         if (layout.damped) size = largest(size, layout.damping_diagonal[c] * fastest());
         return magnitude(s) - layout.threshold[c] <= AT_THRESHOLD * size;
     }
-    // Where a block sticks, or its slip has become so slow that it creeps; fastest : the highest angular frequency of
-    // the chain, above the rate at which the speed of an overdamped slip decays
-    mask rests(int c, double fastest) const { return rests(c, velocity[c], slip_acceleration(c, force(c)), fastest); }
+    // Where a block sticks, or its slip has become slower than a limit; fastest : the highest angular frequency of the
+    // chain, above the rate at which the speed of an overdamped slip decays
+    mask rests(int c, double limit, double fastest) const {
+        return rests(c, velocity[c], slip_acceleration(c, force(c)), limit, fastest);
+    }
     // The same for a slip of another speed and acceleration.
-    mask rests(int c, vec speed, vec change, double fastest) const {
-        return (slip[c] == vec{}) |
-               ((magnitude(speed) <= layout.creep_speed) & (magnitude(change) <= fastest * layout.creep_speed));
+    mask rests(int c, vec speed, vec change, double limit, double fastest) const {
+        return (slip[c] == vec{}) | ((magnitude(speed) <= limit) & (magnitude(change) <= fastest * limit));
     }
     // The largest |U_i'| of all blocks.
     vec fastest() const {

@@ -4,10 +4,10 @@ Relative to uniform sliding, x_i = U_i − vτ − e_i, the springs alone give M
 velocity leaves these oscillations nearly unchanged while all blocks slip; sticks exchange energy between them.
 
 Blocks that have one frequency are not necessarily locked: they also have one frequency if they move in one mode. The
-two differ in the shape of the common oscillation. In one mode, amplitudes and phases are those of the mode, whatever
-the masses. Locked oscillators have their own amplitudes, and a difference of phase that shifts with the detuning, up to
-a quarter of a cycle where locking ends: such a motion is a superposition of modes, all but one of which oscillate at a
-frequency that is not theirs.
+two differ in the shape of the common oscillation. In one mode, amplitude ratios and phases are those of the mode,
+whatever the masses. Locked oscillators have their own amplitudes, and a difference of phase that shifts with the
+detuning, up to a quarter of a cycle where locking ends: such a motion is a superposition of modes, all but one of which
+oscillate at a frequency that is not theirs.
 
 Reference: A. Pikovsky, M. Rosenblum and J. Kurths, Synchronization (Cambridge University Press 2001), chapters 3 and 8.
 """
@@ -29,6 +29,9 @@ from burridge_knopoff.values import MOST_NUMBERS, instance_of
 
 # A block with a smaller share of the largest displacement in a mode does not decide the sign of the mode.
 AT_REST = 1e-6
+
+# Modes whose frequencies differ by no more than rounding, relative to the highest one, have equal frequencies.
+EQUAL = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,10 +86,12 @@ class ModeAmplitudes:
     def line_shares(self, frequency: float) -> np.ndarray:
         """Return the shares of the modes in the kinetic energy of the part of the motion at a frequency: (modes,).
 
-        NaN if nothing moves at this frequency.
+        Modes of equal frequencies, as in a ring, are determined up to a rotation only: they count as one mode, and the
+        share of each of them is that of all. NaN if nothing moves at this frequency.
         """
         square = np.abs(self.line(frequency)) ** 2
-        return square / (square.sum() or math.nan)
+        group = np.cumsum(np.diff(self.frequency, prepend=self.frequency[0]) > EQUAL * self.frequency[-1])
+        return np.bincount(group, square)[group] / (square.sum() or math.nan)
 
 
 def mode_amplitudes(model: Model, state: ChainState, duration: float = 4000.0) -> ModeAmplitudes:

@@ -10,6 +10,12 @@ from burridge_knopoff.model.model import Model
 # A weaker spring to the driver moves a block that creeps less than rounding does.
 UNPULLED = 1e-9
 
+# Rounding of forces, relative to thresholds and springs, and a slow slip, relative to the speed of slips.
+ROUNDING, SLOW = 1e-13, 1e-6
+
+# Damping that is below critical by no more than this share is critical within rounding.
+CRITICAL = 1e-14
+
 
 def kernel_model(model: Model, loading: str = "steady") -> KernelModel:
     """Return the chain, friction law and driver of a model for the kernel; loading : see `Runner`."""
@@ -39,23 +45,52 @@ def kernel_model(model: Model, loading: str = "steady") -> KernelModel:
         v=v,
         symmetric=model.contact == "symmetric",
         creep_speed=creep_speed(model, loading),
+        rest_speed=rest_speed(model) if loading == "quasistatic" else 0.0,
     )
 
 
 def creep_speed(model: Model, loading: str) -> float:
-    """Return the speed below which a slip that can creep does not stop; 0 if no slip of the model can creep.
+    """Return the speed of rounding: a slip that can creep stops below minus this; 0 if no slip of the model can creep.
 
-    Behind a driver at rest it is a small fraction of the slowest speed at which a block slips after the drop of
-    friction at its start. A driver that moves pulls blocks that creep, but for those without a spring to it: their
-    speed tends to 0 as well, and must not fall below 0 by rounding of forces.
+    A driver that moves pulls blocks that creep, but for those without a spring to it. The speed of those tends to 0, as
+    that of all blocks behind a driver at rest does, and must not fall below 0 by rounding of forces. Below critical
+    damping it may: there the block stops.
     """
-    chain, slope = model.chain, float(model.law.slope(0.0))
-    if not chain.is_damped and slope <= 0.0:
+    chain = model.chain
+    if not _can_creep(model) or (loading == "steady" and not _has_unpulled_creep(model)):
         return 0.0
-    damping = chain.damping_diagonal + chain.thresholds * max(slope, 0.0)
-    resistance = np.maximum(np.sqrt(chain.diagonal * chain.masses), damping)
-    if loading == "quasistatic":
-        return 1e-6 * float((chain.thresholds * (1.0 - float(model.law(0.0))) / resistance).min())
-    if (chain.driving > UNPULLED).all():
+    return ROUNDING * float((np.maximum(chain.thresholds, chain.diagonal) / _resistance(model)).min())
+
+
+def rest_speed(model: Model) -> float:
+    """Return the speed below which a slip behind a driver at rest is slow; 0 if no slip of the model can creep.
+
+    It is a small fraction of the slowest speed at which a block slips after the drop of friction at its start.
+    """
+    if not _can_creep(model):
         return 0.0
-    return 1e-13 * float((np.maximum(chain.thresholds, chain.diagonal) / resistance).min())
+    drop = model.chain.thresholds * (1.0 - float(model.law(0.0)))
+    return max(SLOW * float((drop / _resistance(model)).min()), 10.0 * creep_speed(model, "quasistatic"))
+
+
+def _can_creep(model: Model) -> bool:
+    return model.chain.is_damped or float(model.law.slope(0.0)) > 0.0
+
+
+def _has_unpulled_creep(model: Model) -> bool:
+    """Return whether blocks without a spring to the driver can creep; if two of them are neighbours, they may."""
+    chain = model.chain
+    unpulled = chain.driving <= UNPULLED
+    start, index, _, _ = chain.neighbours
+    if (np.repeat(unpulled, np.diff(start)) & unpulled[index]).any():
+        return True
+    damping = chain.damping_diagonal + chain.thresholds * float(model.law.slope(0.0))
+    critical = 2.0 * np.sqrt(chain.diagonal * chain.masses)
+    return bool((unpulled & (damping >= (1.0 - CRITICAL) * critical)).any())
+
+
+def _resistance(model: Model) -> np.ndarray:
+    """Return the force per speed that slows each block at most, by its springs or by damping."""
+    chain = model.chain
+    damping = chain.damping_diagonal + chain.thresholds * max(float(model.law.slope(0.0)), 0.0)
+    return np.maximum(np.sqrt(chain.diagonal * chain.masses), damping)

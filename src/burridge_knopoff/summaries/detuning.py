@@ -2,7 +2,7 @@
 
 If a motion is its own mirror image, its end blocks have one frequency by symmetry. If they keep it with different
 masses, and perturbations of their relative phase decay, they may be locked oscillators, or the friction may select one
-mode of the springs, in which all blocks have one frequency. The shares of the modes in the common oscillation decide
+mode of the springs, in which all blocks have one frequency. Amplitude ratio and phase of the common oscillation decide
 (`motion.modes`). If N blocks oscillate freely, none of their phases decays and N Lyapunov exponents are 0; each locked
 relation between the phases, and each mode that is suppressed, makes one of them negative.
 

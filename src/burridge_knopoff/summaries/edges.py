@@ -25,7 +25,7 @@ from burridge_knopoff.continuation.edges import (
 )
 from burridge_knopoff.dataset.columns import Column, column_values
 from burridge_knopoff.dataset.summary import axes, summary
-from burridge_knopoff.dataset.variables import YES_OR_NO, Variable, flag
+from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.kind import CHAOS, MotionKind
@@ -74,9 +74,28 @@ EDGES = {
         _EDGE,
         "i1",
         "boundary is crossed: whether states displaced to one side cross the boundary and its part there "
-        "leads back to this edge state; the boundary is then fractal",
-        YES_OR_NO,
+        "leads back to this edge state; the boundary is then fractal; otherwise crossing_high says how many may cross",
+        flag("i1", {0: "not_seen", 1: "yes"}),
         value=lambda row: row.edge.state.has_crossing,
+    ),
+    "crossing_count": Column(
+        _BANKS,
+        "i4",
+        "number of states that cross: states displaced to this side that reach an attractor of the other side, "
+        "of those in reached_count",
+        value=lambda row: row.edge.state.crossing_count,
+    ),
+    "crossing_low": Column(
+        _EDGE,
+        "f8",
+        "share of states that cross: lower end of its 95 % Wilson interval, over both sides",
+        value=lambda row: row.edge.state.crossing_share[1],
+    ),
+    "crossing_high": Column(
+        _EDGE,
+        "f8",
+        "share of states that cross: upper end of this interval; a crossing by fewer states may be missed",
+        value=lambda row: row.edge.state.crossing_share[2],
     ),
     "branch": Column(
         _BANKS,

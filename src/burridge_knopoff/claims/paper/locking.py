@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.choice import Detuning, LooseShare, ModeShare
+from burridge_knopoff.claims.choice import Detuning, LooseShare, ModeDeviation
 from burridge_knopoff.claims.claim import claim
 from burridge_knopoff.claims.conventions import combine_readings
 from burridge_knopoff.claims.evidence import MIN_VALUES, Evidence
@@ -56,7 +56,7 @@ def branch_locked(
     *,
     a: Range = BELOW,
     detuning: Detuning = 0.3,
-    mode_share: ModeShare = 0.95,
+    mode_deviation: ModeDeviation = 0.35,
     loose_share: LooseShare = 0.9,
 ) -> Verdict:
     """The motion below a = 0.1, which depends on history, is an example of frequency locking, also without
@@ -68,10 +68,12 @@ def branch_locked(
 
     Frequency locking may mean that they keep one frequency, and that a perturbation of their relative phase decays,
     which «analogous to an excitation in linear systems» allows: three blocks that oscillate freely would have three
-    Lyapunov exponents of 0. Or it means locking as opposed to a normal mode, which also has one frequency: no mode
-    carries the share `mode_share` of the kinetic energy of their common oscillation. With 30 % more mass, no mode
-    has 93 % of the energy if both amplitudes are equal, and less the nearer the end of locking is; with 10 % a mode
-    may have 99 %, which does not decide.
+    Lyapunov exponents of 0. Or it means locking as opposed to a normal mode, which also has one frequency: the end
+    blocks do not have the amplitude ratio and phase difference of a mode. With r e^{iθ} their complex ratio and ρ
+    that of the nearest mode, they move in the mode if |r e^{iθ}/ρ − 1| is at most `mode_deviation`. With 30 % more
+    mass ρ = −0.57: equal amplitudes deviate by 0.76 in antiphase, and more the nearer the end of locking is. With
+    10 % they deviate by 0.22, which does not decide. Nor does the energy: with 30 % more mass 95 % of it may be in
+    one mode at any ratio from 0.32 to 0.91.
 
     If the end blocks of branch 1 are locked to the middle block, the rotation number is a ratio of whole numbers
     that is constant in a. The verdict reports where, but does not depend on it. Fractions of a are taken over the
@@ -94,23 +96,23 @@ def branch_locked(
                 raise NotTestableError(f"branch {branch} is regular at fewer than {MIN_VALUES} values of a ({law})")
             grid, frequency = detuned["a"].values, detuned["detuned_frequency"].values
             third, error = (detuned[key].values[:, 2] for key in ("detuned_exponent", "detuned_exponent_error"))
-            largest = detuned["detuned_mode_share"].values.max(axis=1)
+            deviation = _deviation_from_modes(detuned)
             one_frequency = has_one_frequency(frequency) & (third < -STANDARD_ERRORS * error)
-            locked = one_frequency & (largest < mode_share)
-            shares[ONE_FREQUENCY][name], shares[NO_MODE][name] = count_share(one_frequency), count_share(locked)
+            is_locked = one_frequency & (deviation > mode_deviation)
+            shares[ONE_FREQUENCY][name], shares[NO_MODE][name] = count_share(one_frequency), count_share(is_locked)
             measured += [
                 Measured(f"share of a at which the end blocks keep one frequency, {name}", one_frequency.mean()),
-                Measured(f"share of a at which they are locked, {name}", locked.mean()),
+                Measured(f"share of a at which they are locked, {name}", is_locked.mean()),
                 Measured(
                     f"largest difference of their frequencies, {name}", np.ptp(frequency[:, [0, -1]], axis=1).max()
                 ),
                 Measured(f"largest third exponent, {name}", third.max()),
-                Measured(f"smallest share of the largest mode, {name}", largest.min()),
+                Measured(f"largest deviation from a mode in amplitude ratio and phase, {name}", deviation.max()),
             ]
             where += describe_where(
                 "the end blocks do not keep one frequency with a stable relative phase", grid, ~one_frequency, name
             )
-            where += describe_where("the end blocks are locked", grid, locked, name)
+            where += describe_where("the end blocks are locked", grid, is_locked, name)
         numbers, texts = _locked_to_middle(of_law, a, law)
         measured, where = measured + numbers, where + texts
     verdicts = {
@@ -121,11 +123,20 @@ def branch_locked(
     reason = (
         f"With {100 * detuning:g} % more mass on one of them, the end blocks keep one frequency, and a perturbation of "
         f"their relative phase decays (the third Lyapunov exponent is negative), {kept} "
-        f"({verdicts[ONE_FREQUENCY]}). They are locked, with less than {100 * mode_share:g} % of the kinetic energy of "
-        f"this oscillation in any normal mode, {locked} ({verdicts[NO_MODE]}). Each motion was followed for "
-        f"{rotation.attrs['detuned_transient'] + 2.0 * rotation.attrs['detuned_window']:g} time units."
+        f"({verdicts[ONE_FREQUENCY]}). They are locked, their complex amplitude ratio more than "
+        f"{100 * mode_deviation:g} % away from that of any normal mode, {locked} ({verdicts[NO_MODE]}). Each motion "
+        f"was followed for {rotation.attrs['detuned_transient'] + 2.0 * rotation.attrs['detuned_window']:g} time units."
     )
     return combine_readings(verdicts, reason, measured, where)
+
+
+def _deviation_from_modes(detuned: xarray.Dataset) -> np.ndarray:
+    """Return |r e^{iθ}/ρ − 1| with the complex amplitude ratio r e^{iθ} of the end blocks and ρ of the nearest mode.
+
+    detuned : motion of one branch at one detuning; the result has the shape (values,)
+    """
+    ratio = detuned["detuned_end_ratio"].values * np.exp(1j * np.radians(detuned["detuned_end_phase"].values))
+    return np.abs(ratio[:, None] / detuned["mode_end_ratio"].values - 1.0).min(axis=1)
 
 
 def _locked_to_middle(rotation: xarray.Dataset, a: Range, law: str) -> tuple[list[Measured], list[str]]:
