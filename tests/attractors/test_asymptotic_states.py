@@ -54,6 +54,13 @@ def test_only_states_close_to_synchrony_count_as_approaching_it(v, apart, kind):
     assert state.kind == kind
 
 
+def test_a_state_whose_run_did_not_complete_is_undetermined():
+    """It is not a number, and no start of a run."""
+    model = Model(Chain(3), law_of("linearized", 0.05), 0.1)
+    lost = replace(synchronized_orbit(model).reference, position=np.full(3, np.nan))
+    assert module._slow_synchrony(model, lost, SEARCH, MOTION).kind == MotionKind.UNDETERMINED
+
+
 def test_states_do_not_synchronize_where_synchrony_repels():
     assert two_block_exponent("linearized", 0.05013) > 0.0
     (state,) = asymptotic_states(pair("linearized", 0.05013), [APART])

@@ -289,3 +289,23 @@ def test_no_exponent_without_an_event(loading, end):
     spectrum = event_exponents(model, start, end, loading=loading)
     assert spectrum.events == 0
     assert np.isnan([spectrum.exponent, spectrum.error]).all()
+
+
+@pytest.mark.parametrize("loading", ["steady", "quasistatic"])
+def test_no_exponent_of_a_run_that_did_not_complete(loading, monkeypatch):
+    """The growth until the last whole batch, divided by all events, was once an exponent."""
+    model = Model(Chain(3, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 0.1)
+    whole = event_exponents(model, rough(model), 300.0, count=2, loading=loading)
+    values = (f"{value:.6g} +- {error:.1g}" for value, error in zip(whole.exponent, whole.error, strict=True))
+    assert repr(whole) == f"<EventExponents {', '.join(values)}, {whole.events} events>"
+    monkeypatch.setattr("burridge_knopoff.running.runner.STEP_LIMIT", 500)
+    spectrum = event_exponents(model, rough(model), 300.0, count=2, loading=loading)
+    assert (spectrum.status, spectrum.exponent.shape) == (Status.STEP_LIMIT, (2,))
+    assert np.isnan([spectrum.exponent, spectrum.error]).all()
+    assert 0 < spectrum.events < whole.events
+    ended = f"the run did not complete: step limit at tau = {spectrum.end_time:g}"
+    assert 0.0 < spectrum.end_time < 300.0
+    assert repr(spectrum) == f"<EventExponents {ended}, {spectrum.events} events>"
+    still = ChainState(np.array([-0.5, -0.52, -0.51]) - model.sliding_offset, np.zeros(3), np.ones(3, dtype=bool))
+    with pytest.raises(ValueError, match=r"^end: got 300\.0, expected an earlier time: the run did not complete: step"):
+        event_multipliers(model, still, 300.0, loading=loading)

@@ -1,4 +1,4 @@
-"""`bk attractors`, `basins`, `orbit`, `exponents`: what they print and write is what the library gives."""
+"""`bk attractors`, `basins`, `orbit`, `exponents`, `catalogue`: what they print and write is what the library gives."""
 
 import shlex
 
@@ -15,6 +15,7 @@ from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.kind import format_motion, motion_of_run
 from burridge_knopoff.motion.settings import MOTION
 from burridge_knopoff.running.simulation import run
+from burridge_knopoff.running.status import EXIT_CODE
 from burridge_knopoff.show.attractors import attractor_table
 from burridge_knopoff.study.formatting import to_ascii, with_error
 
@@ -112,3 +113,31 @@ def test_exponents(capsys, tmp_path):
     assert error < 0.003
     with xr.open_dataset(out) as point:
         assert point["mean_distance"].item() == trajectory.mean_distance
+
+
+def test_a_run_that_did_not_complete_has_no_exponents(capsys):
+    """Backward slip under the linearized law grows without limit. Not a number was once a result of the table."""
+    state = ["--contact", "symmetric", "--position=-1,-0.5,-0.8", "--velocity", "0.1,0,0.2"]
+    length = ["--transient", "500", "--window", "500", "--batches", "2"]
+    assert main(["exponents", "--law", "linearized", "--a", "2.5", *state, *length]) == EXIT_CODE
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].endswith("from own: the run did not complete: diverged at tau = 12.1596")
+    assert lines[2:] == [
+        "no exponents, no kind of motion and no <J>",
+        "transverse exponent of the nearby symmetric motion: none, its run did not complete",
+    ]
+
+
+def test_a_catalogue_that_is_not_complete_has_no_rates(capsys, monkeypatch):
+    """Ten slips of a block, of which each has a stop and a start, without a slope and the rest of the window."""
+    monkeypatch.setattr("burridge_knopoff.running.runner.STEP_LIMIT", 200)
+    state = ["--blocks", "1", "--pulling", "1", "--position=-0.9", "--velocity", "0", "--start", "tested"]
+    length = ["--transient", "10", "--window", "5000"]
+    assert main(["catalogue", "--law", "linearized", "--a", "0.1", "--v", "0.01", *state, *length]) == EXIT_CODE
+    head, _, events, magnitude, ended = capsys.readouterr().out.splitlines()
+    assert head.endswith(": step_limit")
+    assert events.endswith(" from tau = 10 until the run ended")
+    assert int(events.split()[1]) > 5
+    assert magnitude.startswith("magnitude ")
+    assert ended.startswith("the run did not complete: step limit at tau = ")
+    assert ended.endswith("; there are no rates and no slope")

@@ -58,6 +58,7 @@ def test_all_values_of_a_stay_on_the_axis_of_section_points():
             "crossing_velocity": ("crossing", [0.3, -0.3]),
             "crossing_direction": ("crossing", [1, -1]),
             "crossing_count": ("point", [2, 0, 0]),
+            "status": ("point", np.zeros(3, "i1")),
         },
         {"a": ("point", [2.0, 3.0, 5.0]), "law": ("point", ["linearized"] * 3), "initial": ("point", ["plus"] * 3)},
     )
@@ -70,6 +71,12 @@ def test_all_values_of_a_stay_on_the_axis_of_section_points():
     ]
     for nothing in (points.isel(crossing=[]).assign(crossing_count=0 * points["crossing_count"]), down(points)):
         assert words(bifurcation_diagram.draw(nothing)) == [["W never crosses 0 upward: the section is never reached"]]
+        for status, said in (
+            (3, "no run completed"),
+            ([3, 0, 3], "W never crosses 0 upward: the section is never reached"),
+        ):
+            failed = nothing.assign(status=("point", np.full(3, status)))
+            assert words(bifurcation_diagram.draw(failed)) == [[said]]
     assert words(bifurcation_diagram.draw(points)) == [[]]
 
 

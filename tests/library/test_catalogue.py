@@ -59,6 +59,10 @@ def test_a_run_that_ends_early_has_no_rates():
     assert summary["status"].item() == catalogue.status
     assert np.isnan(summary["event_rate"]).all()
     assert np.isnan(summary["slope"]).all()
+    ended = f"the run did not complete: diverged at tau = {catalogue.final.time:g}"
+    assert repr(catalogue).endswith(f"τ = 0 to 1000, {ended}>")
+    with refused(f"slope: expected a complete catalogue: {ended}"):
+        catalogue.slope()
 
 
 @pytest.mark.parametrize("form", ["grid", "network"])

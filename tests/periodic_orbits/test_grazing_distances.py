@@ -16,7 +16,7 @@ from burridge_knopoff import (
     limit_cycle,
     simulate,
 )
-from burridge_knopoff.periodic_orbits.flow import flow, rate
+from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, rate
 from burridge_knopoff.periodic_orbits.grazing_distances import (
     GrazingDistances,
     _derivatives,
@@ -241,3 +241,10 @@ def test_motion_with_backward_slip_or_pull_has_grazing_distances(threshold, posi
         assert distances.speed[k] == pytest.approx(-np.concatenate(slow).max(initial=-np.inf), abs=1e-3)
         assert distances.force[k] == pytest.approx(threshold[k] - np.concatenate(pulled).max(initial=-np.inf), abs=1e-3)
     assert np.isfinite([*distances.speed, *distances.force]).any()
+
+
+def test_an_orbit_that_cannot_be_followed_has_no_distances(dropping, monkeypatch):
+    """They were once infinite, as if no grazing were near."""
+    monkeypatch.setattr("burridge_knopoff.running.runner.STEP_LIMIT", 20)
+    with pytest.raises(OrbitError, match=r"^a = 0\.15: the run along the orbit ends at τ = "):
+        grazing_distances(dropping)

@@ -61,21 +61,22 @@ def test_ranges_of_a(holds, words):
 def test_where_each_state_is_synchronized():
     synchronized = np.array([[[1, 1, 0, 0], [0, 0, 0, 0]]], "i1"), flag("i1", {0: "no", 1: "yes"})
     distance = np.array([[[0, 1e-9, 0.1, 0.15], [0.2, 0.1, np.nan, 0.12]]])
-    assert mean_distance.digest(of_runs(synchronized=synchronized, mean_distance=[distance])).splitlines() == [
+    data = of_runs(synchronized=synchronized, mean_distance=[distance], status=[[[[0, 0, 0, 0], [0, 0, 2, 0]]]])
+    assert mean_distance.digest(data).splitlines() == [
         "linearized, minus: synchronized up to a = 0.05; largest <J> 0.15 at a = 0.15",
-        "linearized, plus: synchronized at no a; largest <J> 0.2 at a = 0",
+        "linearized, plus: synchronized at no a; largest <J> 0.2 at a = 0; 1 of 4 runs did not complete",
     ]
 
 
 def test_where_each_state_is_chaotic():
     kinds = np.array([[[0, 0, 1, 3], [-1, 2, 5, 1]]], "i1"), flag("i1", MotionKind)
     exponents = np.array([[[0.0, -np.inf, 0.001, 0.05], [np.nan] * 4]])
-    data = of_runs(run_kind=kinds, whole=[exponents])
+    data = of_runs(run_kind=kinds, whole=[exponents], status=[[[[0, 0, 0, 0], [1, 0, 0, 0]]]])
     data["lyapunov_exponent"] = data["whole"].expand_dims(exponent=1, axis=-1)
     assert lyapunov.digest(data).splitlines() == [
         "linearized, minus: chaotic at 1 of 4 values of a, first at a = 0.15; largest exponent 0.05 at a = 0.15",
         "linearized, plus: chaotic at 1 of 4 values of a, first at a = 0.1; undetermined at 1 value of a from the run "
-        "alone (agreement.nc has the kind of the attractor)",
+        "alone (agreement.nc has the kind of the attractor); 1 of 4 runs did not complete",
     ]
 
 
@@ -85,9 +86,10 @@ def test_catalogues_without_events():
     data = xarray.Dataset({"status": status, "event_count": (("law", "a"), [[7, 0, 0]])})
     assert empty_catalogues(data) == f"no slip event at 1 of 3 values: {NO_EVENT}"
     assert empty_catalogues(data.isel(a=[0, 1])) == ""
-    for events, state, words in ((0, 0, f"no slip event: {NO_EVENT}"), (0, 3, ""), (2, 0, "")):
+    ended = "the run did not complete: diverged at tau = 7.5; there are no rates and no slope"
+    for events, state, words in ((0, 0, f"no slip event: {NO_EVENT}"), (0, 3, ended), (2, 3, ended), (2, 0, "")):
         dataset = xarray.Dataset({"status": ((), np.int8(state), STATUS_FLAG), "time": ("event", np.zeros(events))})
-        assert slip_events.digest(dataset) == words
+        assert slip_events.digest(dataset.assign(end_time=7.5)) == words
     assert Status.COMPLETED == 0
 
 
@@ -180,11 +182,14 @@ def test_the_range_of_section_points():
         crossing_velocity=[0.2, -0.3, 0.25, -0.1],
         crossing_direction=[1, -1, 1, -1],
         crossing_count=[3, 1],
+        status=[0, 0],
     )
     assert bifurcation_diagram.digest(data).splitlines() == [
         "l, minus: W' at upward crossings is 0.2 to 0.25, largest at a = 0.1",
         "l, plus: W never crosses 0 upward",
     ]
+    failed = data.assign(status=("point", [0, 3]))
+    assert bifurcation_diagram.digest(failed).endswith("l, plus: no run completed; 1 of 1 run did not complete")
 
 
 def test_kinds_of_motion_over_several_parameters():
@@ -198,15 +203,17 @@ def test_kinds_of_motion_over_several_parameters():
             "lyapunov_exponent": ((*axes, "exponent"), exponent),
             "mean_distance": (tuple(axes), distance),
             "synchronized": (tuple(axes), (kinds == 0).astype("i1"), flag("i1", {0: "no", 1: "yes"})),
+            "status": (tuple(axes), np.where(kinds == -1, 2, 0)),
         },
         axes,
     )
     counts = "linearized, minus: 4 points: undetermined 1, synchronized 1, periodic 2"
-    assert lyapunov.digest(data) == f"{counts}; largest exponent 0.1 at a = 0.1, v = 0.3"
+    ended = "1 of 4 runs did not complete"
+    assert lyapunov.digest(data) == f"{counts}; largest exponent 0.1 at a = 0.1, v = 0.3; {ended}"
     assert mean_distance.digest(data) == (
-        "linearized, minus: synchronized at 1 of 4 points; largest <J> 0.2 at a = 0.2, v = 0.1"
+        f"linearized, minus: synchronized at 1 of 4 points; largest <J> 0.2 at a = 0.2, v = 0.1; {ended}"
     )
-    assert lyapunov.digest(data.isel(exponent=slice(0))) == counts
+    assert lyapunov.digest(data.isel(exponent=slice(0))) == f"{counts}; {ended}"
 
 
 def test_where_uniform_sliding_is_unstable():

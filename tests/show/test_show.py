@@ -101,7 +101,13 @@ def test_a_run_that_failed(tmp_path, capsys):
     path = tmp_path / "failed.nc"
     write_point(simulate("linearized", 1.9, "minus", contact="symmetric", transient=0.0, window=1000.0), path)
     said = output_of(capsys, path, "--plot", tmp_path / "failed.png")
-    for words in ("diverged at tau = 22.479\n", "undetermined\n", "5 samples, tau = 0 to 20\n", "at 0 times\n"):
+    for words in (
+        ": diverged at tau = 22.479\n",
+        "undetermined\n",
+        "stops and starts until then\n",
+        "5 samples, tau = 0 to 20\n",
+        "at 0 times\n",
+    ):
         assert words in said
     assert (tmp_path / "failed.png").stat().st_size > 10_000
 

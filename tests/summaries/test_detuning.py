@@ -111,3 +111,14 @@ def test_at_large_detunings_they_have_two_frequencies() -> None:
 def test_at_equal_masses_their_frequencies_are_equal_by_symmetry() -> None:
     motion = frequencies_of_branch_1("linearized", 0.06, 0.0)
     assert motion.frequency[0] == pytest.approx(motion.frequency[2], abs=1e-8)
+
+
+def test_a_motion_that_does_not_complete_has_no_frequencies(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The motion after the end of such a run has not settled."""
+    model = Model(Chain(3), law_of("linearized", 0.05))
+    monkeypatch.setattr("burridge_knopoff.running.runner.STEP_LIMIT", 500)
+    motion = detuned_motion(model, model.begin(PAPER_STATES["plus"]), 0.1, 3)
+    for values in (motion.frequency, motion.frequency_error, motion.exponent, motion.mode_share):
+        assert values.shape == (3,)
+        assert np.isnan(values).all()
+    assert np.isnan([motion.end_ratio, motion.end_phase]).all()

@@ -127,7 +127,8 @@ def _slow_synchrony(model: Model, end: ChainState, settings: SearchSettings, mot
     Near the loss of synchrony a state neither reaches it nor leaves it within the time limit. The multipliers of the
     synchronized orbit decide whether it attracts.
     """
-    if not model.chain.is_mirror_symmetric or pair_distances(end).max() > settings.resolution * model.scale:
+    # The state is NaN if its run did not complete.
+    if not model.chain.is_mirror_symmetric or not pair_distances(end).max() <= settings.resolution * model.scale:
         return AsymptoticState()
     symmetric = symmetrized(end)
     try:

@@ -10,7 +10,7 @@ from burridge_knopoff.dataset.point import STATUS_FLAG, model_attributes
 from burridge_knopoff.dataset.variables import Variable, global_attributes, xarray_variables
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.running.status import Status
+from burridge_knopoff.running.status import early_end
 
 if TYPE_CHECKING:
     import xarray
@@ -23,6 +23,7 @@ CATALOGUE_VARIABLES = {
     "a": _V((), "f8", "friction parameter a", coordinate=True),
     "v": _V((), "f8", "driver velocity v", coordinate=True),
     "status": _V((), "i1", "how the run ended", STATUS_FLAG),
+    "end_time": _V((), "f8", "time tau at which the run ended"),
     "time": _V(_EVENT, "f8", "time tau of the first start: on the loading clock", coordinate=True),
     "slip_time": _V(
         _EVENT,
@@ -69,6 +70,7 @@ def catalogue_dataset(
     import xarray
 
     extra = {"a": model.a, "v": model.v, "slip_block": events.slip_block, "slip_distance": events.slip}
+    extra["end_time"] = events.final.time
     variables = {**CATALOGUE_VARIABLES, **(PROFILE_VARIABLES if len(events.slip) else {})}
     values = {name: extra[name] if name in extra else getattr(events, name) for name in variables}
     data = xarray_variables(variables, values)
@@ -110,6 +112,7 @@ def catalogue_of_run(
 
 
 def digest(data: xarray.Dataset) -> str:
-    """Return why the catalogue of one completed run is empty; empty if it is not."""
-    is_empty = not data.sizes["event"] and data["status"].item() == Status.COMPLETED
-    return f"no slip event: {NO_EVENT}" if is_empty else ""
+    """Return why the catalogue of one run is empty, or that its run did not complete; empty if neither is so."""
+    if ended := early_end(data["status"].item(), data["end_time"].item()):
+        return f"{ended}; there are no rates and no slope"
+    return "" if data.sizes["event"] else f"no slip event: {NO_EVENT}"

@@ -14,7 +14,7 @@ from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Whole
 from burridge_knopoff.running.derivative import missing_derivative
 from burridge_knopoff.running.runner import Runner, check_state
-from burridge_knopoff.running.status import Status
+from burridge_knopoff.running.status import Status, early_end
 from burridge_knopoff.values import instance_of
 
 # A block at its threshold, at the start of an event, counts as stuck: relative rounding error of forces.
@@ -29,9 +29,9 @@ class EventExponents:
     """Lyapunov exponents of the map from one slip event to the next, in descending order.
 
     exponent, error : growth of the logarithm of perturbations per event, and its standard error from batches, shape
-        (count,); −∞ for perturbations that events remove, NaN without an event
+        (count,); −∞ for perturbations that events remove, NaN without an event or if the run did not complete
     events : number of events in the average
-    status : how the run ended
+    status, end_time : how the run ended, and τ then
 
     >>> from burridge_knopoff import Chain, InitialState, Model, event_exponents, law_of
     >>> model = Model(Chain(3, coupling=2), law_of("carlson_langer", 2.0), v=1.0)
@@ -45,6 +45,12 @@ class EventExponents:
     error: np.ndarray
     events: int
     status: Status
+    end_time: float
+
+    def __repr__(self) -> str:
+        values = (f"{value:.6g} +- {error:.1g}" for value, error in zip(self.exponent, self.error, strict=True))
+        ended = early_end(self.status, self.end_time)
+        return f"<EventExponents {ended or ', '.join(values)}, {self.events} events>"
 
 
 def event_exponents(
@@ -104,14 +110,16 @@ def event_exponents(
     time, growth = catalogue.take()["time"], exponents.results()["growth"]
     # A single time of rest bounds no event.
     events, batches = len(time) if len(rests) != 1 else 0, len(growth)
-    if events == 0:
-        return EventExponents(np.full(count, math.nan), np.full(count, math.nan), 0, status)
+    # The growth in a batch that has not ended is unknown.
+    if events == 0 or status != Status.COMPLETED:
+        return EventExponents(np.full(count, math.nan), np.full(count, math.nan), events, status, runner.clock)
     with np.errstate(divide="ignore", invalid="ignore"):
         mean = growth.sum(axis=0) / events
         scatter = growth - mean * np.histogram(time, edges)[0][:, None]
         error = np.sqrt(np.divide(batches, batches - 1) * np.sum(scatter**2, axis=0)) / events
     order = np.argsort(-mean, kind="stable")
-    return EventExponents(mean[order], np.where(np.isneginf(mean), 0.0, error)[order], events, status)
+    error = np.where(np.isneginf(mean), 0.0, error)
+    return EventExponents(mean[order], error[order], events, status, runner.clock)
 
 
 def _check_derivative(runner: Runner) -> None:
@@ -172,8 +180,9 @@ def event_multipliers(model: Model, start: ChainState, end: float, *, loading: s
     pulled = np.abs(force) if model.contact == "symmetric" else force
     if not start.stuck.all() or (pulled > model.chain.thresholds * (1.0 + THRESHOLD_TOLERANCE)).any():
         raise refusal("start", start, "a state in which all blocks stick, none beyond its threshold")
-    status = runner.run(end)
-    if status != Status.COMPLETED or not runner.state().stuck.all():
+    if ended := early_end(runner.run(end), runner.clock):
+        raise refusal("end", end, f"an earlier time: {ended}")
+    if not runner.state().stuck.all():
         raise refusal("end", end, "a time at which all blocks stick")
     _check_derivative(runner)
     product = runner.perturbations[:blocks]

@@ -58,11 +58,14 @@ def run(options: argparse.Namespace) -> int:
     status = Status(summary["status"].item())
     count = summary["event_count"].item()
     print(f"{model_line(model)}, from {state.name}: {status.name.lower()}\n")
-    print(f"events      {count} from tau = {settings.transient:g} to {settings.end:g}")
+    until = f"to {settings.end:g}" if status == Status.COMPLETED else "until the run ended"
+    print(f"events      {count} from tau = {settings.transient:g} {until}")
+    if count and status == Status.COMPLETED:
+        print(f"rate        {summary['event_rate'].item():.6g} per unit of tau")
     if count:
         magnitude, blocks = events["magnitude"].values, events["blocks"].values
-        print(f"rate        {summary['event_rate'].item():.6g} per unit of tau")
         print(f"magnitude   {magnitude.min():.4g} to {magnitude.max():.4g}; {blocks.min()} to {blocks.max()} blocks")
+    if count and status == Status.COMPLETED:
         names = ("slope", "slope_error", "slope_low", "slope_high", "slope_count", "slope_p_value")
         slope, error, low, high, fitted, p_value = (summary[name].item() for name in names)
         where = f"{fitted} events from {low:g} to {high:g}"

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import math
 
 from burridge_knopoff.cli.options import add_model, add_settings, add_state, model_line, model_of, settings_of, state_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.derivative import none_because
 from burridge_knopoff.running.settings import Settings
-from burridge_knopoff.running.status import EXIT_CODE
+from burridge_knopoff.running.status import EXIT_CODE, Status, early_end
 from burridge_knopoff.study.formatting import to_ascii, with_error
 
 DESCRIPTION = """Compute the Lyapunov exponents of the motion from an initial state, and classify the motion. For a
@@ -46,29 +47,34 @@ def run(options: argparse.Namespace) -> int:
         # Refuse the window before the run, not after.
         window_range(model.chain).form(options.window, "window")
     trajectory = simulation.run(model, state, settings_of(Settings, options))
-    print(f"{model_line(model)}, from {state.name}: {trajectory.status} at tau = {trajectory.end_time:g}\n")
-    if trajectory.missing_derivative:
-        print(f"exponents: {none_because(trajectory.missing_derivative)}\n")
-    exponents = zip(trajectory.lyapunov_exponent, trajectory.lyapunov_error, strict=True)
-    rows = [(str(k), f"{value:z.6f}", f"{error:.6f}") for k, (value, error) in enumerate(exponents, 1)]
-    print("\n".join(table(("", "Lyapunov exponent", "error"), rows)))
-    if trajectory.lyapunov_infinite_count > 0:
-        infinite = int(trajectory.lyapunov_infinite_count)
-        verb = "is" if infinite == 1 else "are"
-        print(f"at least {infinite} of the {2 * model.blocks} exponents {verb} -infinity: blocks stick")
-    motion = motion.scaled_to_velocity(model.v)
-    outcome = motion_of_run(vars(trajectory), model.chain.is_mirror_symmetric, motion)
-    print(f"\nmotion: {format_motion(outcome, motion)}")
-    print(f"<J> = {to_ascii(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}")
+    ended = early_end(Status[trajectory.status.upper()], trajectory.end_time)
+    print(f"{model_line(model)}, from {state.name}: {ended or f'completed at tau = {trajectory.end_time:g}'}\n")
+    if ended:
+        print("no exponents, no kind of motion and no <J>")
+    else:
+        if trajectory.missing_derivative:
+            print(f"exponents: {none_because(trajectory.missing_derivative)}\n")
+        exponents = zip(trajectory.lyapunov_exponent, trajectory.lyapunov_error, strict=True)
+        rows = [(str(k), f"{value:z.6f}", f"{error:.6f}") for k, (value, error) in enumerate(exponents, 1)]
+        print("\n".join(table(("", "Lyapunov exponent", "error"), rows)))
+        if trajectory.lyapunov_infinite_count > 0:
+            infinite = int(trajectory.lyapunov_infinite_count)
+            verb = "is" if infinite == 1 else "are"
+            print(f"at least {infinite} of the {2 * model.blocks} exponents {verb} -infinity: blocks stick")
+        motion = motion.scaled_to_velocity(model.v)
+        outcome = motion_of_run(vars(trajectory), model.chain.is_mirror_symmetric, motion)
+        print(f"\nmotion: {format_motion(outcome, motion)}")
+        print(f"<J> = {to_ascii(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}")
     if model.chain.is_mirror_symmetric:
         start = model.begin(state, options.start)
         alignment = max(options.transient, ALIGNMENT * model.chain.own_units.time)
         try:
-            words = to_ascii(with_error(*transverse_exponent(model, start, alignment, options.window)))
-        except OrbitError as error:
-            words = f"none: {error}"
+            value, error = transverse_exponent(model, start, alignment, options.window)
+            words = "none, its run did not complete" if math.isnan(value) else to_ascii(with_error(value, error))
+        except OrbitError as reason:
+            words = f"none: {reason}"
         print(f"transverse exponent of the nearby symmetric motion: {words}")
     if options.out:
         write_point(trajectory, options.out)
         print(f"written: {options.out}")
-    return 0 if trajectory.status == "completed" else EXIT_CODE
+    return EXIT_CODE if ended else 0

@@ -12,7 +12,7 @@ from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.derivative import none_because
 from burridge_knopoff.running.settings import Settings
-from burridge_knopoff.running.status import EXIT_CODE
+from burridge_knopoff.running.status import EXIT_CODE, Status, early_end
 from burridge_knopoff.study.formatting import to_ascii, with_error
 
 if TYPE_CHECKING:
@@ -68,11 +68,8 @@ def run(options: argparse.Namespace) -> int:
     if trajectory.status == "completed":
         print(f"{options.out}: {outcome(trajectory)}")
     else:
-        print(
-            f"note: bk simulate: {options.out}: the run ended at tau = {trajectory.end_time:g} with status "
-            f"{trajectory.status}; its averages are NaN",
-            file=sys.stderr,
-        )
+        ended = early_end(Status[trajectory.status.upper()], trajectory.end_time)
+        print(f"note: bk simulate: {options.out}: {ended}; its averages are NaN", file=sys.stderr)
         return EXIT_CODE
     return 0
 

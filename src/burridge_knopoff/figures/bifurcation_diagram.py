@@ -10,7 +10,14 @@ from matplotlib.figure import Figure
 
 from burridge_knopoff.attractors.lookup import CROSSINGS
 from burridge_knopoff.figures.style import label_panels, panel_table, say, show_all, styled
-from burridge_knopoff.summaries.bifurcation_diagram import NEVER_UPWARD, ROUNDING, STAYS, section_points
+from burridge_knopoff.summaries.bifurcation_diagram import (
+    NEVER_UPWARD,
+    NONE_COMPLETED,
+    ROUNDING,
+    STAYS,
+    has_completed,
+    section_points,
+)
 
 TITLE = "Bifurcation diagrams"
 CATEGORY = "Synchronization"
@@ -21,8 +28,8 @@ Section points W' on the section W = 0 versus a, for each law and initial state:
 crossings W' < 0. W is the sum of the positions relative to uniform sliding, or the position of one block if the config
 sets `section`. At W' = −Nv (−0.3 for three blocks at v = 0.1), with W of all N blocks, all of them stick at the
 crossing. Points are larger where a run has only a few. Crossings slower than 10⁻⁹ are rounding errors of uniform
-sliding and are left out. At a = 0 the paper's laws are constant: free oscillations neither grow nor decay, and their
-several frequencies give a band.
+sliding and are left out, as are all crossings of runs that did not complete. At a = 0 the paper's laws are constant:
+free oscillations neither grow nor decay, and their several frequencies give a band.
 """
 
 # With more values of a than this, the points of a cloud are drawn small, to resolve it; with fewer, large.
@@ -56,7 +63,8 @@ def draw(bifurcation: xarray.Dataset) -> Figure:
         panel.axhline(0.0, color="0.6", linewidth=0.5, zorder=0)
         if not (np.abs(last_upward[1]) > ROUNDING).any():
             # In uniform sliding, only rounding crosses the section.
-            say(panel, STAYS if upward[0].size else NEVER_UPWARD)
+            empty = STAYS if upward[0].size else NEVER_UPWARD
+            say(panel, empty if has_completed(bifurcation, law, state).any() else NONE_COMPLETED)
         titles.append(f"{state}, {law} law")
     label_panels(panels, titles)
     return figure

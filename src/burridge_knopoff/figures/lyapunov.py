@@ -28,7 +28,8 @@ CAPTION = """\
 The two largest Lyapunov exponents versus a, with bars of three times their error, for each law and initial state. The
 error includes the scatter of the batches and algebraic growth of perturbations. Values below the frame, including −∞,
 are not shown. The strip at the top of each panel shows the kind of motion: from the exponents and section points of the
-run or, where these do not decide, from the attractor that the run has reached. White inside a frame: undetermined.
+run or, where these do not decide, from the attractor that the run has reached. White inside a frame: undetermined, or
+the run did not complete.
 """
 
 # The frame reaches down at least this far, so that exponents near 0 look near 0.

@@ -273,8 +273,9 @@ class Catalogue {
             // The spring force falls by (K slip)_i.
             drop -= springs.pull(slip.data(), i);
         }
-        full = std::max(table.time.size(), table.slip.size()) >= most;
-        if (event.load.time >= from && !full) {
+        const bool wanted = event.load.time >= from;
+        full |= wanted && std::max(table.time.size(), table.slip.size()) >= most;
+        if (wanted && !full) {
             table.time.push_back(event.load.time);
             table.slip_time.push_back(event.start.time);
             table.duration.push_back(event.start.until(at));

@@ -231,8 +231,10 @@ Group *Run::release(Group &group) {
     return remaining.empty() ? nullptr : &collect(remaining);
 }
 
-// Solve Σ_j K_ij y_j = right_i for some blocks by conjugate gradients.
+// Solve Σ_j K_ij y_j = right_i for some blocks by conjugate gradients, with the diagonal as preconditioner: springs of
+// very different strengths need many times fewer steps with it. In exact arithmetic there are as many steps as blocks.
 std::vector<double> Run::solve(const std::vector<int> &members, const std::vector<double> &right) {
+    constexpr int STEPS_A_BLOCK = 100;
     const Springs &springs = model.springs;
     const int n = int(members.size());
     for (int m = 0; m < n; m++) row_of[members[m]] = m;
@@ -242,10 +244,15 @@ std::vector<double> Run::solve(const std::vector<int> &members, const std::vecto
         for (int m = 0, end = n - 1; m <= end; m++, end--) total += a[m] * b[m] + (m < end ? a[end] * b[end] : 0.0);
         return total;
     };
-    std::vector<double> solution(n), residual = right, direction = right, product(n);
-    double square = dot(residual, residual);
+    std::vector<double> solution(n), residual = right, scaled(n), product(n);
+    auto scale = [&] {
+        for (int m = 0; m < n; m++) scaled[m] = residual[m] / springs.diagonal[members[m]];
+    };
+    scale();
+    std::vector<double> direction = scaled;
+    double square = dot(residual, scaled);
     const double least = 1e-33 * square;
-    for (int step = 0; step < 4 * n + 16 && square > least; step++) {
+    for (int step = 0; step < STEPS_A_BLOCK * n && square > least; step++) {
         watch.worked(n);
         for (int m = 0; m < n; m++) {
             const int i = members[m];
@@ -260,9 +267,10 @@ std::vector<double> Run::solve(const std::vector<int> &members, const std::vecto
             solution[m] += length * direction[m];
             residual[m] -= length * product[m];
         }
+        scale();
         const double before = square;
-        square = dot(residual, residual);
-        for (int m = 0; m < n; m++) direction[m] = residual[m] + square / before * direction[m];
+        square = dot(residual, scaled);
+        for (int m = 0; m < n; m++) direction[m] = scaled[m] + square / before * direction[m];
     }
     for (int i : members) row_of[i] = -1;
     return solution;

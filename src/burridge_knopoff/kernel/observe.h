@@ -211,7 +211,8 @@ struct Observer {
 //
 // `earlier` has rows (time | block, kind) for events before `states_from`; `events` has rows (time | block, kind, x_1 …
 // x_N, U_1' … U_N') for those from `states_from` on. With `stops_only` only the stops from `states_from`
-// on are stored. More than `rate_limit` events in one time unit of the chain count as an accumulation.
+// on are stored. More than `rate_limit` events in one time unit of the chain count as an accumulation. All times are
+// those of the slip clock.
 struct EventLog {
     const double states_from;
     const bool keep, stops_only;

@@ -27,6 +27,7 @@ struct Record {
     void clear() {
         time.clear();
         value.clear();
+        full = false;
     }
 };
 

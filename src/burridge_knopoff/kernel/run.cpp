@@ -2,13 +2,14 @@
 
 namespace bk {
 
-void Run::restart(double time) {
-    now = load = {time, 0.0};
-    observer.begin = time;
+void Run::restart(const Clock &at, const Clock &loaded) {
+    now = at;
+    load = loaded;
+    observer.begin = at.time;
     observer.section_from = NEVER;
     steps = 0;
     since_event = 0.0;
-    log.restart(time);
+    log.restart(at.time);
     if (catalogue) catalogue->restart();
     queue = waiting = {};
     spare.clear();
@@ -25,11 +26,8 @@ void Run::restart(double time) {
 
 void Run::resume(const Mark &mark, double time) {
     alone = mark.block;
-    restart(time);
-    if (loading > 0.0) {
-        now = mark.now;
-        load = mark.load;
-    }
+    const Clock begin{time, 0.0};
+    restart(loading > 0.0 ? mark.now : begin, loading > 0.0 ? mark.load : begin);
     since_event = mark.since_event;
     if (catalogue && mark.catalogue) catalogue->resume(*mark.catalogue);
     // A section that is observed from now on keeps the sign of W of the previous run.
@@ -389,6 +387,7 @@ bool Run::load_next(Group &group) {
     }
     change_due(group, now);
     while (!log.accumulating && settle(group, now)) {}
+    since_event = 0.0;
     return true;
 }
 

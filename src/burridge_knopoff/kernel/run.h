@@ -122,7 +122,7 @@ class Run {
             const double slip = stuck[i] ? 0.0 : speed[i] < 0.0 ? -1.0 : 1.0;
             alone[i] = {position[i], stuck[i] ? 0.0 : speed[i], 0.0, LONG, slip, 0.0, {time, 0.0}, {time, 0.0}};
         }
-        restart(time);
+        restart({time, 0.0}, {time, 0.0});
         settled = false;
     }
 
@@ -197,7 +197,7 @@ class Run {
     Queue &starts() { return loading > 0.0 ? waiting : queue; }
 
     // Both ways, in run.cpp.
-    void restart(double time);
+    void restart(const Clock &at, const Clock &loaded);
     void settle_first();
     void state_of(int i, double &position, double &speed, double &direction);
     double position_at_rest(int i, const Clock &at) const;

@@ -10,6 +10,7 @@ from burridge_knopoff.catalogue.distribution import fit_range
 from burridge_knopoff.catalogue.events import SlipEvents
 from burridge_knopoff.catalogue.slope import Slope, fit_slope
 from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.running.status import early_end
 
 if TYPE_CHECKING:
     import xarray
@@ -41,15 +42,19 @@ class Catalogue(SlipEvents):
     def __repr__(self) -> str:
         return (
             f"<Catalogue of {len(self.time)} slip events of {self.model.blocks} blocks, {self.model.law.name} law, "
-            f"τ = {self.begin_time:g} to {self.end_time:g}, {self.status.name.lower()}>"
+            f"τ = {self.begin_time:g} to {self.end_time:g}, "
+            f"{early_end(self.status, self.final.time) or self.status.name.lower()}>"
         )
 
     def slope(self, low: float | None = None, high: float | None = None) -> Slope:
         """Return the slope of the magnitudes from `low` to `high`; see `fit_slope`.
 
         By default from one bin above the most frequent magnitude of events with more than one block to the least
-        frequent magnitude below the one that releases most moment.
+        frequent magnitude below the one that releases most moment. Raises ValueError, one line, if the run did not
+        complete.
         """
+        if ended := early_end(self.status, self.final.time):
+            raise ValueError(f"slope: expected a complete catalogue: {ended}")
         return fit_slope(self.magnitude, *fit_range(self.magnitude, self.moment, self.blocks, low, high))
 
     def plot(self) -> Figure:

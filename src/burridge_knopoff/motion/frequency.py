@@ -25,6 +25,7 @@ from burridge_knopoff.periodic_orbits.grazing_distances import longest_spacing
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.runner import Runner, check_state
 from burridge_knopoff.running.settings import LONGEST
+from burridge_knopoff.running.status import early_end
 from burridge_knopoff.values import MOST_NUMBERS, instance_of, read_only_copy
 
 # The spectrum is sampled more finely than its resolution by this factor, so that a parabola fits the top of a peak.
@@ -114,7 +115,10 @@ class SampledMotion:
 
 
 def sampled_motion(model: Model, state: ChainState, duration: float) -> SampledMotion:
-    """Return the motion from a state; raises ValueError, one line, for a duration or a state that is not allowed."""
+    """Return the motion from a state.
+
+    Raises ValueError, one line, for a duration or a state that is not allowed, and if the run does not complete.
+    """
     duration = Number(0.0, LONGEST, above=True).form(duration, "duration")
     check_state(model, state)
     count = 2 * math.ceil(0.5 * duration / (SPACING * longest_spacing(model.chain)))
@@ -123,6 +127,8 @@ def sampled_motion(model: Model, state: ChainState, duration: float) -> SampledM
     time = np.linspace(0.0, duration, count + 1)
     start = (state.position[None], state.velocity[None], state.stuck[None].astype(bool))
     motion = new_ensemble(model).run(*start, time.tolist())
+    if ended := early_end(motion["status"].item(), motion["end"].item()):
+        raise refusal("duration", duration, f"a shorter one: {ended}")
     return SampledMotion(model, state, time, motion["position"][0], motion["velocity"][0])
 
 

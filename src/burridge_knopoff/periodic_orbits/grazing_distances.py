@@ -21,10 +21,11 @@ import numpy as np
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.own_units import OwnUnits
-from burridge_knopoff.periodic_orbits.flow import state_after
+from burridge_knopoff.periodic_orbits.flow import OrbitError, state_after
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner, new_observer
+from burridge_knopoff.running.status import Status
 
 # Longest time, in the chain's own unit, between the states searched for smallest speeds and largest forces, and longest
 # phase of the fastest mode in that time. The Hermite cubic through two states locates the instant to 1e-5; a
@@ -92,7 +93,8 @@ def grazing_distances(orbit: PeriodicOrbit) -> GrazingDistances:
     observer = new_observer(model, 2 * [until + longest], trajectory_time=time, section_only=True)
     runner = Runner(model, observer=observer)
     runner.begin(orbit.reference, 0.0)
-    runner.run(until + longest)
+    if runner.run(until + longest) != Status.COMPLETED:
+        raise OrbitError(f"a = {model.a:.12g}: the run along the orbit ends at τ = {runner.clock:g}")
     results = observer.results()
     position, velocity = results["position"], results["velocity"]
     stuck, event = (np.stack(rows, axis=1) for rows in zip(*_states(orbit, time), strict=True))

@@ -19,3 +19,10 @@ STATUS_WORDS = {int(status): status.name.lower() for status in sorted(Status) if
 
 #: Exit code of a command whose run did not complete; its results are still written.
 EXIT_CODE = 3
+
+
+def early_end(status: int, time: float) -> str:
+    """Return that a run did not complete, how it ended and when; empty if it completed."""
+    if status == Status.COMPLETED:
+        return ""
+    return f"the run did not complete: {STATUS_WORDS[status].replace('_', ' ')} at tau = {time:g}"

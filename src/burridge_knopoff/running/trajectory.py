@@ -14,7 +14,7 @@ from burridge_knopoff.running.derivative import missing_derivative
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.settling import LEVELS, distance_rounding
-from burridge_knopoff.running.status import Status
+from burridge_knopoff.running.status import Status, early_end
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,9 +83,10 @@ class Trajectory:
     missing_derivative: str
 
     def __repr__(self) -> str:
+        ended = early_end(Status[self.status.upper()], self.end_time)
         return (
-            f"<Trajectory of {self.model.blocks} blocks from {self.initial.name}, {self.model.law.name} law, "
-            f"a = {self.model.a:g}: {self.status} at tau = {self.end_time:g}, {self.event_count} events, "
+            f"<Trajectory of {self.model.blocks} blocks from {self.initial.name}, {self.model.law.name} law, a = "
+            f"{self.model.a:g}: {ended or f'completed at tau = {self.end_time:g}'}, {self.event_count} events, "
             f"<J> = {self.mean_distance:.6g} +- {self.mean_distance_error:.1g}>"
         )
 

@@ -13,7 +13,7 @@ from burridge_knopoff.motion.kind import format_motion, motion_of_run
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.command import CHAIN_OPTIONS
 from burridge_knopoff.running.derivative import none_because
-from burridge_knopoff.running.status import Status
+from burridge_knopoff.running.status import early_end
 from burridge_knopoff.show.formatting import list_numbers, wrap_lines
 from burridge_knopoff.show.result import Result
 from burridge_knopoff.study.formatting import format_count, to_ascii, with_error
@@ -78,9 +78,11 @@ def _outcome(point: xarray.Dataset, motion: MotionSettings) -> Iterator[tuple[st
     run = {str(name): variable.values for name, variable in point.variables.items()}
     options = {key: _plain_value(point.attrs[name]) for key in CHAIN_OPTIONS if (name := f"chain_{key}") in point.attrs}
     chain = Chain(point.sizes["block"], **options)
-    status = Status(point["status"].item()).name.lower()
-    yield "status", f"{status} at tau = {point['end_time'].item():g}"
-    yield "<J>", to_ascii(with_error(point["mean_distance"].item(), point["mean_distance_error"].item()))
+    end_time = point["end_time"].item()
+    ended = early_end(point["status"].item(), end_time)
+    yield "status", ended or f"completed at tau = {end_time:g}"
+    mean = with_error(point["mean_distance"].item(), point["mean_distance_error"].item())
+    yield "<J>", "unknown" if ended else to_ascii(mean)
     motion = motion.scaled_to_velocity(point["v"].item())
     yield "motion", format_motion(motion_of_run(run, chain.is_mirror_symmetric, motion), motion)
     exponents = list(zip(run["lyapunov_exponent"], run["lyapunov_error"], strict=True))
@@ -91,8 +93,9 @@ def _outcome(point: xarray.Dataset, motion: MotionSettings) -> Iterator[tuple[st
             verb = "is" if infinite == 1 else "are"
             yield "", f"at least {infinite} of the {2 * chain.blocks} exponents {verb} -infinity"
     else:
-        yield "exponents", none_because(point.attrs.get("missing_derivative", ""))
-    yield "events", f"{point['event_count'].item()} stops and starts in the whole run"
+        reason = point.attrs.get("missing_derivative", "")
+        yield "exponents", "unknown" if ended else none_because(reason)
+    yield "events", f"{point['event_count'].item()} stops and starts {'until then' if ended else 'in the whole run'}"
     yield "", f"smallest friction Phi of a slipping block {run['least_friction']:.4g}"
     word = "most negative" if run["least_spring_force"] < 0.0 else "smallest"
     yield "", f"{word} spring force on a stuck block {run['least_spring_force']:.4g}"

@@ -69,6 +69,8 @@ def detuned_motion(model: Model, start: ChainState, detuning: float, exponents: 
     """Return the motion after a change of the mass of the last block.
 
     start : state at which the mass is multiplied by 1 + detuning; exponents : number of exponents to compute
+
+    All numbers are NaN if the run does not complete.
     """
     detuned = detuned_model(model, detuning)
     settings = Settings(
@@ -81,6 +83,10 @@ def detuned_motion(model: Model, start: ChainState, detuning: float, exponents: 
         lyapunov_alignment=0.25 * TRANSIENT,
     )
     settled = run(detuned, start, settings, section_only=True)
+    if settled.status != "completed":
+        unknown = np.full(model.blocks, math.nan)
+        exponent = settled.lyapunov_exponent, settled.lyapunov_error
+        return DetunedMotion(unknown, unknown, *exponent, unknown, math.nan, math.nan, settled.final)
     motion = sampled_motion(detuned, settled.final, WINDOW)
     frequency, error = motion.frequencies()
     share, ratio = np.full(model.blocks, math.nan), complex(math.nan)

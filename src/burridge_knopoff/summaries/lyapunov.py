@@ -28,7 +28,7 @@ from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.summaries import runs as all_runs
 from burridge_knopoff.summaries.runs import RUN
 from burridge_knopoff.summaries.sentences import RUN as LINE
-from burridge_knopoff.summaries.sentences import largest, lines_of
+from burridge_knopoff.summaries.sentences import incomplete, largest, lines_of
 
 _UNCLEAR = "undetermined at {} of a from the run alone (agreement.nc has the kind of the attractor)"
 
@@ -124,7 +124,7 @@ def digest(data: xarray.Dataset) -> str:
         kind = part["run_kind"]
         top = largest("exponent", part["lyapunov_exponent"].max("exponent")) if part.sizes["exponent"] else []
         words = _chaotic_values(kind) if kind.ndim == 1 else [_kind_counts(kind.values)]
-        return "; ".join([*words, *top])
+        return "; ".join([*words, *top, *incomplete(part["status"].values == Status.COMPLETED)])
 
     return lines_of(data, LINE, sentence)
 

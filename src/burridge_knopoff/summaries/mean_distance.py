@@ -10,11 +10,12 @@ import xarray
 from burridge_knopoff.dataset.decoding import decode_flags
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
+from burridge_knopoff.running.status import Status
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.summaries import runs as all_runs
 from burridge_knopoff.summaries.runs import RUN
 from burridge_knopoff.summaries.sentences import RUN as LINE
-from burridge_knopoff.summaries.sentences import largest, lines_of, values_where
+from burridge_knopoff.summaries.sentences import incomplete, largest, lines_of, values_where
 
 SYNCHRONIZED = Variable(RUN, "i1", "synchronized: whether <J> is below the threshold", YES_OR_NO)
 _OF_RUNS = (
@@ -56,6 +57,7 @@ def digest(data: xarray.Dataset) -> str:
         where = f"at {np.count_nonzero(is_synchronized)} of {format_count(is_synchronized.size, 'point')}"
         if is_synchronized.ndim == 1:
             where = values_where(is_synchronized, part["a"].values)
-        return "; ".join([f"synchronized {where}", *largest("<J>", part["mean_distance"])])
+        completed = part["status"].values == Status.COMPLETED
+        return "; ".join([f"synchronized {where}", *largest("<J>", part["mean_distance"]), *incomplete(completed)])
 
     return lines_of(data, LINE, sentence)

@@ -92,12 +92,12 @@ def summarize(grid: Grid, period_tolerance: float, longest_period: float) -> xar
     def scalars(run: Mapping[str, np.ndarray], point: Sequence[str]) -> dict[str, Any]:
         law, _, *names = point
         values: dict[str, Any] = {name: run[name] for name in _COPIED}
-        upward = run["crossing_velocity"][run["crossing_direction"] > 0]
-        values["section_count"] = count_distinct(upward[len(upward) // 2 :])
-        if len(upward):
-            values |= {f"section_velocity_{name}": getattr(upward, name)() for name in ("mean", "min", "max")}
         values["mirror_symmetric"] = grid.model_of(law, *names).chain.is_mirror_symmetric
         if run["status"] == Status.COMPLETED:
+            upward = run["crossing_velocity"][run["crossing_direction"] > 0]
+            values["section_count"] = count_distinct(upward[len(upward) // 2 :])
+            if len(upward):
+                values |= {f"section_velocity_{name}": getattr(upward, name)() for name in ("mean", "min", "max")}
             repetition = repetition_of(run, motion.scaled_to_velocity(float(run["v"])))
             values |= {f"repetition_{name}": value for name, value in vars(repetition).items()}
         return values
