@@ -17,7 +17,9 @@ from burridge_knopoff.claims.verdict import (
     LOOSELY,
     OPEN,
     READING,
+    SILENT,
     Measured,
+    NotTestableError,
     UndecidedError,
     Verdict,
     join_words,
@@ -44,27 +46,41 @@ def judge_conventions(
     own : verdict from the study's runs
     exceptions : where the claim does not hold under the study's convention
     judge : takes the attractors with the branches that the initial states reach under one convention; returns the
-        verdict and the numbers behind it as text; the verdict is "" if nothing is known
+        verdict and the numbers behind it as text; the verdict is "" if too little is known, and SILENT if the statement
+        is about nothing there
 
     A claim depends on convention if it holds, at least loosely, under one convention and fails under another. If the
     study has the contact of the paper, only conventions with this contact count, and what the others give is listed.
+
+    Raises NotTestableError if the study has no attractors, or if they leave open a convention that counts.
     """
-    verdicts, others, unknown = {evidence.own_convention: own}, [], []
+    verdicts: dict[str, str] = {evidence.own_convention: own}
+    others: list[str] = []
+    silent: list[str] = []
+    unknown: list[str] = []
     for name, attractors in evidence.other_conventions():
         judged, numbers = judge(attractors)
-        if judged:
-            verdicts[name] = judged
-        else:
-            unknown.append(name)
-        if judged and judged != own:
+        if judged in ("", SILENT):
+            (silent if judged else unknown).append(name)
+            continue
+        verdicts[name] = judged
+        if judged != own:
             others.append(f"under ({name}) it {judged}: {numbers}")
-    if unknown:
-        others.append(f"it cannot be judged under {join_words([f'({name})' for name in unknown])}")
+    for words, names in ((f"it {SILENT} under", silent), ("it cannot be judged under", unknown)):
+        if names:
+            others.append(f"{words} {join_words([f'({name})' for name in names])}")
+    counts = [
+        name
+        for name in (*verdicts, *unknown)
+        if evidence.config["contact"] != PAPER_CONTACT or name.split(", ")[0] == PAPER_CONTACT
+    ]
+    verdict = CONVENTION if _is_divided({name: verdicts[name] for name in counts if name in verdicts}) else own
+    if verdict != CONVENTION and (undecided := [name for name in unknown if name in counts]):
+        raise NotTestableError(
+            f"under {join_words([f'({name})' for name in undecided])}, which could change the verdict, too few of the "
+            "attractors reached are known"
+        )
     changes = "; ".join([*exceptions, *others])
-    decisive = verdicts
-    if evidence.config["contact"] == PAPER_CONTACT:
-        decisive = {name: verdict for name, verdict in verdicts.items() if name.split(", ")[0] == PAPER_CONTACT}
-    verdict = CONVENTION if _is_divided(decisive) else own
     return Verdict(verdict, reason, measured, changes, dict(sorted(verdicts.items())), own)
 
 

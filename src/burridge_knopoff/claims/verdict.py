@@ -36,6 +36,10 @@ FEW = 10
 _RANK = (HOLDS, LOOSELY, UNDECIDED, NOT_TESTABLE, FAILS)
 
 
+#: In place of a verdict under a convention: the statement is about nothing there, so that it cannot be false.
+SILENT = "is about nothing"
+
+
 class NotTestableError(Exception):
     """A claim that the study's data cannot judge; the message gives the reason."""
 

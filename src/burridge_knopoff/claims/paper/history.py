@@ -6,7 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.choice import Close, Correlation, InnerShare, LooseShare, Opposite, Samples, StateShare
+from burridge_knopoff.claims.choice import (
+    ANTIPHASE,
+    Close,
+    Correlation,
+    InnerShare,
+    LooseShare,
+    Opposite,
+    Samples,
+    StateShare,
+)
 from burridge_knopoff.claims.claim import claim
 from burridge_knopoff.claims.conventions import combine_readings
 from burridge_knopoff.claims.evidence import Evidence
@@ -200,7 +209,7 @@ def phases_decide(
     inner_share: InnerShare = 0.0,
     close: Close = 30.0,
     opposite: Opposite = 180.0,
-    correlation: Correlation = -0.5,
+    correlation: Correlation = ANTIPHASE,
     share: StateShare = 0.9,
     loose_share: LooseShare = 0.9,
 ) -> Verdict:
@@ -223,8 +232,15 @@ def phases_decide(
     evidence.check_blocks()
     phases = evidence.summary("phases")
     evidence.choose(phases, a)
+    if not (phases["inner_share"].values != inner_share).any():
+        raise NotTestableError(
+            f"phases.inner_share needs a second value beside {inner_share:g}: whether the middle block oscillates "
+            "could change the verdict"
+        )
     criteria = Criteria(a, close, opposite, correlation, share, loose_share)
     judged = PhaseOutcomes(phases, inner_share, criteria)
+    if judged.without_backward_slip.all():
+        raise NotTestableError("phases.amplitude needs a value at which some block slips backward")
     measured: list[Measured] = []
     changes = []
     for k, size in enumerate(judged.amplitude):
