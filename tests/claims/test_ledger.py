@@ -263,6 +263,7 @@ def test_a_number_holds_within_its_tolerance() -> None:
     assert judge_value(0.144, 0.14, 0.005, 0.01) == "holds"
     assert judge_value(0.148, 0.14, 0.005, 0.01) == "holds loosely"
     assert judge_value(0.16, 0.14, 0.005, 0.01) == judge_value(math.nan, 0.14, 0.005, 0.01) == "fails"
+    assert judge_value(math.inf, 0.14, 0.005, math.inf) == "fails"
 
 
 @pytest.mark.parametrize("missing", quick_first([{"minus", "plus"}, {"minus"}, {"plus"}], 1))

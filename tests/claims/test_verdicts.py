@@ -217,7 +217,10 @@ MOVED = {"plus": {"position": [0.98, -0.993, -0.991], "velocity": [0.099, 0.1012
 FASTER = {"plus": {"position": [0.989, -0.993, -0.991], "velocity": [0.099, 0.1012, 0.1024]}}
 LONGER = "the paper's runs have a transient of 3000 and a window of 7000, those of the study "
 CHAINS = [{"ends": "ring"}, {"coupling": 2.0}, {"pulling": 1.0}, {"threshold": [1.0, 1.1, 1.0]}]
-FEW = "a statement on all 0.005 ≤ a ≤ 0.08 needs values of a from 0.005 to 0.02, from 0.0275 to 0.0575 and …"
+FEW = (
+    "a statement on all 0.005 ≤ a ≤ 0.08 needs values of a from 0.005 to 0.0275, from 0.035 to 0.065 and from 0.0725 "
+    "to 0.08, where the study has none"
+)
 SPRINGS = "the study's chain has other springs, masses or static friction than the paper's"
 
 

@@ -45,7 +45,7 @@ class Claim:
     @property
     def is_of_states(self) -> bool:
         """Whether it is about the motion from the paper's initial states, which the start or rounding may change."""
-        return "initial" in self.parameters and self.topic != "model"
+        return "initial" in self.parameters and bool(self.reads)
 
     def __call__(self, evidence: Evidence, **parameters: object) -> Verdict:
         """Return the verdict; raises ValueError, one line, if the function asks for a summary that is not declared."""
