@@ -91,6 +91,29 @@ def test_a_claim_depends_on_convention_where_it_holds_and_fails(
     assert found == Verdict(expected, "why", figures, f"but{changes}", {"one_sided, moving": own, **judged}, own)
 
 
+@pytest.mark.parametrize(
+    ("own", "under", "expected"),
+    [
+        (HOLDS, ("one_sided, tested",), UNDECIDED),
+        (FAILS, ("one_sided, tested", "symmetric, moving"), UNDECIDED),
+        # Another contact than the paper's does not decide.
+        (LOOSELY, ("symmetric, moving", "symmetric, tested"), LOOSELY),
+    ],
+)
+def test_too_few_values_under_a_convention_leave_the_claim_undecided(own: str, under: tuple[str, ...], expected: str):
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
+        name = f"{attractors['contact'].item()}, {attractors['start'].item()}"
+        return (UNDECIDED, "8 of 9") if name in under else (own, "")
+
+    figures = [Measured("number", 1.0)]
+    found = judge_conventions(evidence(paper_world()), own, "Why.", figures, [], judge_attractors)
+    assert (found.verdict, found.own, found.measured) == (expected, own, figures)
+    assert found.changes == "; ".join(f"under ({name}) it is undecided: 8 of 9" for name in under)
+    assert set(found.conventions.values()) == {own}
+    start = "Undecided: there are too few values under (one_sided, tested). " if expected == UNDECIDED else ""
+    assert found.reason == f"{start}Why."
+
+
 @pytest.mark.parametrize("own", [HOLDS, LOOSELY, FAILS])
 def test_a_convention_that_could_change_the_verdict_is_not_left_out(own: str) -> None:
     def judge_contact(attractors: xarray.Dataset) -> tuple[str, str]:
@@ -153,7 +176,7 @@ def test_one_rule_judges_all_shares(hits: int, count: int, expected: str) -> Non
     assert judge_share(share, 0.9) == expected
     texts = f"9 of 9 (one) and {share} (other)"
     one, open_one = {"one": Share(9, 9), "other": share}, expected == UNDECIDED
-    assert judge_shares(one, 0.9) == ("" if open_one else expected, texts)
+    assert judge_shares(one, 0.9) == (expected, texts)
     if open_one:
         with pytest.raises(UndecidedError, match=rf"{hits} of {count} cases \(other\), and the 95 % interval"):
             judge_worst_share(one, 0.9)
@@ -172,18 +195,18 @@ def test_one_rule_judges_all_shares(hits: int, count: int, expected: str) -> Non
         ([LOOSELY, FAILS], READING),
         # An open share does not matter if the others differ; if they agree, it may differ from them.
         ([HOLDS, NOT_TESTABLE, FAILS], READING),
-        ([NOT_TESTABLE, HOLDS], NOT_TESTABLE),
-        ([FAILS, NOT_TESTABLE], NOT_TESTABLE),
+        ([NOT_TESTABLE, HOLDS], UNDECIDED),
+        ([FAILS, NOT_TESTABLE], UNDECIDED),
     ],
 )
 def test_a_reading_that_is_open_is_not_left_out(readings: list[str], expected: str) -> None:
     verdicts = {f"reading {number}": verdict for number, verdict in enumerate(readings)}
-    if expected == NOT_TESTABLE:
-        with pytest.raises(UndecidedError, match=f"«reading {readings.index(NOT_TESTABLE)}»$"):
-            combine_readings(verdicts, "why", [])
-    else:
-        found = Verdict(expected, "why", [], "but; and", verdicts, readings[0])
-        assert combine_readings(verdicts, "why", [], ["but", "and"]) == found
+    reason = "why"
+    if expected == UNDECIDED:
+        of_reading = f"«reading {readings.index(NOT_TESTABLE)}»"
+        reason = f"Undecided: there are too few values for the reading {of_reading}. why"
+    found = Verdict(expected, reason, [], "but; and", verdicts, readings[0])
+    assert combine_readings(verdicts, "why", [], ["but", "and"]) == found
 
 
 def test_every_claim_that_reads_data_fails_in_some_case() -> None:

@@ -27,9 +27,12 @@ from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
     LOOSELY,
+    NOT_TESTABLE,
     OPEN,
+    UNDECIDED,
     Measured,
     NotTestableError,
+    UndecidedError,
     Verdict,
     at_values,
     count_share,
@@ -167,11 +170,11 @@ def plus_under_one_convention(evidence: Evidence, *, claims: tuple[str, ...] = O
     blocks may stick at τ = 0. Here a symmetric contact counts too, in case the paper's program used it.
 
     claims : by name; each has to be judged before this one. This claim holds loosely if some of them hold loosely. A
-        convention under which one of them is not judged does not count.
+        convention under which one of them is not judged is open, unless another fails there.
     """
     verdicts = {name: evidence.verdicts[name] for name in claims}
     for verdict in verdicts.values():
-        if verdict.verdict in OPEN:
+        if verdict.verdict == NOT_TESTABLE or (verdict.verdict in OPEN and not verdict.conventions):
             raise NotTestableError(verdict.reason.partition(": ")[2].removesuffix("."))
     conventions = sorted({convention for verdict in verdicts.values() for convention in verdict.conventions})
     if not conventions:
@@ -185,13 +188,15 @@ def plus_under_one_convention(evidence: Evidence, *, claims: tuple[str, ...] = O
                 f"claims that hold, of {len(judged)} judged: {convention}", sum(v != FAILS for v in judged.values())
             )
         )
-        together[convention] = worst_verdict(judged.values()) if len(judged) == len(claims) else FAILS
+        together[convention] = worst_verdict([*judged.values(), *[UNDECIDED] * (len(judged) < len(claims))])
         against = [name for name, verdict in judged.items() if verdict == FAILS]
         open_ones = [name for name in claims if name not in judged]
         parts = [f"{join_words(against)} {'fail' if len(against) > 1 else 'fails'}"] if against else []
         parts += [f"{join_words(open_ones)} cannot be judged"] if open_ones else []
         texts.append(f"under ({convention}) {', and '.join(parts) or 'all hold'}")
-    best = min(together.values(), key=(HOLDS, LOOSELY, FAILS).index)
+    best = min(together.values(), key=(HOLDS, LOOSELY, UNDECIDED, FAILS).index)
+    if best == UNDECIDED:
+        raise UndecidedError("; ".join(texts))
     under = [convention for convention, verdict in together.items() if verdict == best]
     reason = (
         f"All of them hold{' loosely' if best == LOOSELY else ''} under {join_words([f'({name})' for name in under])}."
