@@ -74,8 +74,6 @@ def run_settings(study: Study) -> list[tuple[str, str]]:
     chain = next(iter(models.values())).chain
     omitted = () if study.is_plane else study.omitted_stages
     without = [("Left out by the config", ", ".join(omitted))] if omitted else []
-    if not study.is_plane and not study.has_paper_chain:
-        without.append(("Claims of the paper", "none: they are about the paper's chain of 3 blocks"))
     return [
         ("Blocks", f"N = {chain.blocks}"),
         (f"Chain{at_first}", chain_text(chain)),
