@@ -34,7 +34,7 @@ def whole():
                 {"chain": {"threshold": [1.0, 1.1, 1.2]}},
                 {"two_blocks", "proof", "phases", "catalogue", "edges", "claims"},
             ),
-            ({"chain": {"coupling": 2}}, {"proof", "catalogue", "edges", "claims"}),
+            ({"chain": {"coupling": 2}}, {"proof", "phases", "catalogue", "edges", "claims"}),
         ],
         3,
     ),
