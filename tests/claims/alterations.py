@@ -540,6 +540,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("not_differentiable_at_events", LOOSELY, alter("stick_slip", "start_jump", 0.0, a=ONE_OF_MANY)),
     ("not_differentiable_at_events", NOT_TESTABLE, alter("stick_slip", "stop_jump", np.nan)),
     ("sticks_unavoidable", FAILS, alter("attractors", "stop_rate", 0.0, attractor=1)),
+    ("sticks_unavoidable", FAILS, alter("attractors", "stop_rate", 0.0, attractor=0)),
     ("sticks_unavoidable", HOLDS, alter("attractors", "stop_rate", 0.0, block=2)),
     ("sticks_unavoidable", LOOSELY, alter("attractors", "stop_rate", 0.0, a=ONE_OF_MANY)),
     # If one direction does not grow, motion without sticks is possible.
@@ -698,6 +699,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("stick_slip_alone", HOLDS, alter("attractors", "kind", PERIODIC, attractor=1, law="nonlinear")),
     ("stick_slip_alone", LOOSELY, alter("attractors", "branch", -1, attractor=2, law="nonlinear", a=ONE_OF_MANY)),
     ("stick_slip_alone", FAILS, alter("attractors", "stop_rate", 0.0, attractor=1)),
+    ("stick_slip_alone", FAILS, alter("attractors", "stop_rate", 0.0, attractor=0)),
     ("stick_slip_alone", HOLDS, alter("attractors", "stop_rate", 0.0, block=2)),
     ("stick_slip_alone", READING, alter("agreement", "same_kind", 0, initial="plus")),
     ("stick_slip_alone", LOOSELY, alter("agreement", "same_kind", 0, initial="plus", a=ONE_OF_MANY)),
