@@ -211,8 +211,9 @@ def parted(a: Callable[[np.ndarray], np.ndarray] = np.isfinite, **where: object)
     return change
 
 
-def halved_growth(world: Summaries) -> None:
-    world["equilibrium"]["growth_rate"].values[...] *= 0.5
+def growing(rate: float) -> Alteration:
+    """Let perturbations of uniform sliding grow at a rate in units of −F'(v)."""
+    return lambda world: world["equilibrium"].update({"growth_rate": rate * world["equilibrium"]["growth_rate"]})
 
 
 def everywhere(summary: str, name: str, value: float, **where: object) -> Alteration:
@@ -233,6 +234,13 @@ UNKNOWN_ABOVE = reached(-1, initial="minus", a=lambda a: (a > 0.081) & (a < 0.14
 UNREPEATED = alter("lyapunov", "section_period", 0, a=ONE_OF_MANY)
 PARTED = alter("two_blocks", "agrees", 0, state=0)
 ONE_ATTRACTOR = both(alter("attractors", "branch", 0, a=ONE_OF_MANY), reached(0, a=ONE_OF_MANY))
+#: Attractors with a cloud at nine values of a only, at one of which the motion is periodic.
+FEW_CLOUDS = both(
+    alter("attractors", "section_count", 1, attractor=1, a=lambda a: a > 0.0351),
+    alter("attractors", "kind", PERIODIC, attractor=1, a=ONE_OF_MANY),
+)
+#: Claims that follow from the springs and from F'(v) alone.
+THEORY = ("equilibrium_unstable", "growth", "exponentials", "stable_where_friction_grows")
 CHAOS_OF_RUNS = alter("agreement", "kind", CHAOTIC, law="nonlinear")
 CASES: list[tuple[str, str, Alteration]] = [
     ("minus_synchronizes", FAILS, both(synchronized(0, initial="minus"), reached(1, initial="minus"))),
@@ -248,8 +256,19 @@ CASES: list[tuple[str, str, Alteration]] = [
     ),
     (
         "minus_synchronizes",
-        HOLDS,
+        NOT_TESTABLE,
         both(reached(-1, initial="minus", a=lambda a: a > 0.02, **OTHER), reached(1, initial="minus", a=0.02, **OTHER)),
+    ),
+    ("minus_synchronizes", HOLDS, reached(-1, initial="minus", **SYMMETRIC)),
+    # One law is unknown under another convention: it matters unless the other law fails there.
+    ("minus_synchronizes", NOT_TESTABLE, reached(-1, initial="minus", law="linearized", **OTHER)),
+    (
+        "minus_synchronizes",
+        CONVENTION,
+        both(
+            reached(-1, initial="minus", law="linearized", **OTHER),
+            reached(1, initial="minus", law="nonlinear", **OTHER),
+        ),
     ),
     ("minus_synchronizes", CONVENTION, synchronized(0, initial="minus")),
     ("upper_edge", LOOSELY, both(reached(0, initial="minus", a=lambda a: a < 0.087), lost_at(0.0887))),
@@ -283,7 +302,8 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("plus_stationary", FAILS, both(synchronized(1, initial="plus"), reached(0, initial="plus"))),
     ("plus_stationary", CONVENTION, alter("agreement", "settled", 0, initial="plus")),
     ("plus_stationary", CONVENTION, reached(0, initial="plus", **OTHER)),
-    ("plus_stationary", HOLDS, reached(-1, initial="plus", **OTHER)),
+    ("plus_stationary", NOT_TESTABLE, reached(-1, initial="plus", **OTHER)),
+    ("plus_stationary", HOLDS, reached(-1, initial="plus", **SYMMETRIC)),
     ("plus_stationary", NOT_TESTABLE, alter("agreement", "settled", -1, initial="plus")),
     ("plus_stationary", NOT_TESTABLE, alter("mean_distance", "status", 1)),
     ("minus_distance_vanishes", FAILS, alter("mean_distance", "settling_time", 8000.0)),
@@ -307,7 +327,8 @@ CASES: list[tuple[str, str, Alteration]] = [
     ),
     # Under the first law only.
     ("first_block_decides", CONVENTION, reached(0, initial="plus", law="linearized", **OTHER)),
-    ("first_block_decides", HOLDS, reached(-1, initial="minus", **OTHER)),
+    ("first_block_decides", NOT_TESTABLE, reached(-1, initial="minus", **OTHER)),
+    ("first_block_decides", HOLDS, reached(-1, initial="minus", **SYMMETRIC)),
     ("same_for_both_laws", FAILS, both(synchronized(1, initial="plus", law="nonlinear"), reached(0, law="linearized"))),
     ("same_for_both_laws", CONVENTION, synchronized(1, initial="plus", law="nonlinear")),
     # From the first state only.
@@ -465,7 +486,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("plus_cloud", CONVENTION, alter("attractors", "section_count", 1)),
     ("plus_cloud", CONVENTION, alter("attractors", "section_count", 0, attractor=1)),
     ("plus_cloud", CONVENTION, alter("attractors", "section_velocity_mean", 0.6, attractor=1)),
-    ("plus_cloud", HOLDS, alter("attractors", "section_count", -1)),
+    ("plus_cloud", NOT_TESTABLE, alter("attractors", "section_count", -1)),
     ("plus_cloud", CONVENTION, no_crossings),
     ("plus_cloud", NOT_TESTABLE, alter("runs", "status", Status.DIVERGED, a=lambda a: a > 0.03)),
     ("plus_line_disappears", HOLDS, line_from(0.1)),
@@ -477,7 +498,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     # Under other conventions both states may reach the same attractor.
     ("plus_line_disappears", CONVENTION, reached(1, initial="minus")),
     ("plus_line_disappears", FAILS, both(line_from(0.05), reached(1, initial="minus"))),
-    ("plus_line_disappears", HOLDS, reached(-1, initial="minus")),
+    ("plus_line_disappears", NOT_TESTABLE, reached(-1, initial="minus")),
     ("plus_line_disappears", NOT_TESTABLE, crossing(lambda a: a > 0.1)),
     ("plus_largest_exponent", CONVENTION, alter("lyapunov", "lyapunov_exponent", 0.02, exponent=0)),
     ("plus_largest_exponent", CONVENTION, alter("lyapunov", "lyapunov_exponent", -0.02, exponent=0)),
@@ -500,9 +521,10 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("plus_aperiodic", LOOSELY, both(repeating(9), attracting(9))),
     ("plus_aperiodic", FAILS, both(repeating(8), attracting(8))),
     ("plus_aperiodic", CONVENTION, reached(0, initial="plus", **OTHER)),
-    # An unknown attractor, or one of undetermined kind, is not evidence.
-    ("plus_aperiodic", HOLDS, reached(-1, initial="plus", **OTHER)),
-    ("plus_aperiodic", HOLDS, alter("attractors", "kind", UNDETERMINED)),
+    # An unknown attractor, or one of undetermined kind, could change the verdict.
+    ("plus_aperiodic", NOT_TESTABLE, reached(-1, initial="plus", **OTHER)),
+    ("plus_aperiodic", NOT_TESTABLE, alter("attractors", "kind", UNDETERMINED)),
+    ("plus_aperiodic", HOLDS, reached(-1, initial="plus", **SYMMETRIC)),
     # Transient chaos is chaos, as that of a run is.
     ("plus_aperiodic", HOLDS, alter("attractors", "kind", TRANSIENT)),
     ("plus_not_periodic", FAILS, everywhere("agreement", "kind", PERIODIC)),
@@ -526,6 +548,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("not_differentiable_at_events", LOOSELY, alter("stick_slip", "start_jump", 0.0, a=ONE_OF_MANY)),
     ("not_differentiable_at_events", NOT_TESTABLE, alter("stick_slip", "stop_jump", np.nan)),
     ("sticks_unavoidable", FAILS, alter("attractors", "stop_rate", 0.0, attractor=1)),
+    ("sticks_unavoidable", FAILS, alter("attractors", "stop_rate", 0.0, attractor=0)),
     ("sticks_unavoidable", HOLDS, alter("attractors", "stop_rate", 0.0, block=2)),
     ("sticks_unavoidable", LOOSELY, alter("attractors", "stop_rate", 0.0, a=ONE_OF_MANY)),
     # If one direction does not grow, motion without sticks is possible.
@@ -542,7 +565,11 @@ CASES: list[tuple[str, str, Alteration]] = [
         CONVENTION,
         both(reached(2, initial="plus", **OTHER), alter("attractors", "velocity_correlation", 0.3, attractor=2)),
     ),
-    ("antiphase", HOLDS, alter("attractors", "velocity_correlation", np.nan)),
+    ("antiphase", NOT_TESTABLE, alter("attractors", "velocity_correlation", np.nan)),
+    # The ends of both ranges.
+    ("antiphase", HOLDS, alter("stick_slip", "velocity_correlation", -0.9)),
+    ("antiphase", LOOSELY, alter("stick_slip", "velocity_correlation", -0.66)),
+    ("antiphase", FAILS, everywhere("stick_slip", "velocity_correlation", 0.0)),
     ("antiphase_persists", FAILS, alter("agreement", "settled", 0, initial="plus")),
     ("antiphase_persists", LOOSELY, alter("agreement", "settled", 0, initial="plus", a=ONE_OF_MANY)),
     ("antiphase_persists", HOLDS, alter("agreement", "settled", -1, a=ONE_OF_MANY)),
@@ -565,6 +592,15 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("plus_under_one_convention", HOLDS, alter("agreement", "settled", 0, initial="plus")),
     ("plus_under_one_convention", HOLDS, reached(0, initial="plus", **OTHER)),
     ("plus_under_one_convention", NOT_TESTABLE, alter("stick_slip", "stop_rate", np.nan, a=0.08)),
+    # A claim that is undecided may hold under one convention. One that is unknown leaves a convention open.
+    ("plus_under_one_convention", HOLDS, FEW_CLOUDS),
+    ("plus_under_one_convention", FAILS, both(FEW_CLOUDS, alter("mean_distance", "mean_distance", 0.2))),
+    (
+        "plus_under_one_convention",
+        UNDECIDED,
+        both(everywhere("mean_distance", "mean_distance", 0.2), reached(-1, initial="plus", **SYMMETRIC)),
+    ),
+    ("plus_not_periodic", UNDECIDED, FEW_CLOUDS),
     # A cycle may be that of one block, or the time between stops of any.
     ("cycle_time", READING, alter("stick_slip", "cycle_time", 5.7)),
     ("cycle_time", READING, alter("stick_slip", "stop_rate", 1.0)),
@@ -585,13 +621,21 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("equilibrium", FAILS, alter("equilibrium", "equilibrium_position", -0.8, block=1)),
     ("equilibrium", FAILS, alter("equilibrium", "equilibrium_drift", 0.1)),
     ("equilibrium_unstable", FAILS, alter("equilibrium", "eigenvalue", -0.1, part="real", law="nonlinear")),
-    # A complex number is not positive, though its real part may be.
-    ("equilibrium_unstable", READING, alter("equilibrium", "eigenvalue", 1.0, part="imaginary", law="nonlinear")),
-    ("equilibrium_unstable", READING, alter("equilibrium", "eigenvalue", 1.0, part="imaginary", a=0.2)),
+    ("equilibrium_unstable", FAILS, alter("equilibrium", "eigenvalue", 0.0, part="real", a=0.2)),
+    # A positive real part is enough, of one eigenvalue.
+    ("equilibrium_unstable", HOLDS, alter("equilibrium", "eigenvalue", 1.0, part="imaginary")),
+    ("equilibrium_unstable", HOLDS, alter("equilibrium", "eigenvalue", 0.0, part="real", mode=[1, 2, 3, 4, 5])),
     ("stable_where_friction_grows", FAILS, alter("equilibrium", "strengthening_growth_rate", 0.01, a=0.2)),
     ("stable_where_friction_grows", NOT_TESTABLE, alter("equilibrium", "strengthening_growth_rate", np.nan)),
-    ("stable_where_friction_grows", NOT_TESTABLE, few("equilibrium", a=9)),
-    ("growth", FAILS, halved_growth),
+    ("stable_where_friction_grows", FAILS, alter("equilibrium", "strengthening_growth_rate", 0.0, a=0.2)),
+    # Theory needs a single value of a at which friction falls with velocity.
+    *((name, HOLDS, few("equilibrium", a=2)) for name in THEORY),
+    *((name, NOT_TESTABLE, few("equilibrium", a=1)) for name in THEORY),
+    # The oscillations grow, but not at the rate that the formula states.
+    ("growth", READING, growing(0.5)),
+    ("growth", LOOSELY, growing(0.92)),
+    ("growth", FAILS, growing(-1.0)),
+    ("growth", FAILS, growing(0.0)),
     ("minus_near_equilibrium", FAILS, alter("equilibrium", "equilibrium_position", 0.5, block=1)),
     ("minus_near_equilibrium", LOOSELY, alter("equilibrium", "equilibrium_position", -0.7, block=1)),
     ("minus_near_equilibrium", LOOSELY, alter("stick_slip", "position_amplitude", 0.1, initial="minus")),
@@ -599,6 +643,8 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("minus_near_equilibrium", NOT_TESTABLE, alter("stick_slip", "position_amplitude", np.nan)),
     ("friction_keeps_sign", FAILS, alter("mean_distance", "least_friction", -0.1, a=0.3)),
     ("exponentials", FAILS, alter("equilibrium", "eigenvalue", 1.0, part="imaginary")),
+    # Six of them, in three complex pairs.
+    ("exponentials", READING, alter("equilibrium", "eigenvalue", [1.0, -1.0, 2.0, -2.0, 3.0, -3.0], part="imaginary")),
     ("map_dimension", FAILS, few("equilibrium", block=2)),
     ("map_dimension", LOOSELY, alter("lyapunov", "lyapunov_infinite_count", 1, a=ONE_OF_MANY)),
     ("map_dimension", NOT_TESTABLE, alter("lyapunov", "status", 1)),
@@ -629,9 +675,10 @@ CASES: list[tuple[str, str, Alteration]] = [
         ),
     ),
     ("laws_agree", FAILS, alter("agreement", "difference", 0.02)),
-    # 41 of 44 points: all of one curve and nineteen values of the other. 38 of 44 leave the verdict open.
-    ("laws_agree", LOOSELY, means_apart(lambda a: (a > 0.08) & (a < 0.095), initial="plus")),
-    ("laws_agree", UNDECIDED, means_apart(lambda a: (a > 0.072) & (a < 0.096), initial="plus")),
+    # Each curve is judged for itself: 20 of 22 values are nine in ten, 19 leave it open, and with 16 it fails.
+    ("laws_agree", LOOSELY, means_apart(lambda a: (a > 0.08) & (a < 0.09), initial="plus")),
+    ("laws_agree", UNDECIDED, means_apart(lambda a: (a > 0.08) & (a < 0.095), initial="plus")),
+    ("laws_agree", FAILS, means_apart(lambda a: (a > 0.072) & (a < 0.096), initial="plus")),
     ("laws_agree", LOOSELY, means_apart(ONE_OF_MANY, initial="plus")),
     ("laws_agree", NOT_TESTABLE, alter("agreement", "difference_error", 0.01, a=lambda a: a > 0.03, initial="plus")),
     ("laws_agree", HOLDS, alter("agreement", "difference_error", 0.01, a=ONE_OF_MANY)),
@@ -651,7 +698,26 @@ CASES: list[tuple[str, str, Alteration]] = [
     (
         "laws_agree_in_kind",
         UNDECIDED,
-        alter("agreement", "kind", PERIODIC, initial="plus", law="nonlinear", a=lambda a: (a > 0.072) & (a < 0.096)),
+        alter("agreement", "kind", PERIODIC, initial="plus", law="nonlinear", a=lambda a: (a > 0.08) & (a < 0.096)),
+    ),
+    # Attractors that exist under one law only, or on which the motion differs; a motionless block; another result of a
+    # state.
+    ("stick_slip_alone", READING, alter("attractors", "branch", -1, attractor=2, law="nonlinear")),
+    ("stick_slip_alone", READING, alter("attractors", "kind", CHAOTIC, attractor=2, law="nonlinear")),
+    ("stick_slip_alone", HOLDS, alter("attractors", "kind", PERIODIC, attractor=1, law="nonlinear")),
+    ("stick_slip_alone", LOOSELY, alter("attractors", "branch", -1, attractor=2, law="nonlinear", a=ONE_OF_MANY)),
+    ("stick_slip_alone", FAILS, alter("attractors", "stop_rate", 0.0, attractor=1)),
+    ("stick_slip_alone", FAILS, alter("attractors", "stop_rate", 0.0, attractor=0)),
+    ("stick_slip_alone", HOLDS, alter("attractors", "stop_rate", 0.0, block=2)),
+    ("stick_slip_alone", READING, alter("agreement", "same_kind", 0, initial="plus")),
+    ("stick_slip_alone", LOOSELY, alter("agreement", "same_kind", 0, initial="plus", a=ONE_OF_MANY)),
+    ("stick_slip_alone", NOT_TESTABLE, alter("agreement", "same_kind", -1, a=lambda a: a > 0.03)),
+    ("stick_slip_alone", NOT_TESTABLE, alter("attractors", "kind", UNDETERMINED, attractor=0)),
+    ("stick_slip_alone", NOT_TESTABLE, alter("attractors", "branch", -1, law="linearized")),
+    (
+        "stick_slip_alone",
+        FAILS,
+        both(alter("agreement", "same_kind", 0), alter("attractors", "branch", -1, attractor=2, law="nonlinear")),
     ),
     # The kind of motion and ⟨J⟩ are judged separately.
     ("two_blocks_agree", READING, PARTED),
@@ -715,7 +781,9 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("solutions_agree", UNDECIDED, alter("solvers", "difference", 0.05, a=0.02, initial="plus", solver="rk4")),
     ("solutions_agree", NOT_TESTABLE, alter("agreement", "kind", UNDETERMINED, a=lambda a: a > 0.05)),
     ("solutions_agree", FAILS, both(CHAOS_OF_RUNS, alter("attractors", "kind", CHAOTIC, law="nonlinear"))),
-    ("solutions_agree", FAILS, both(CHAOS_OF_RUNS, alter("attractors", "kind", UNDETERMINED))),
+    ("solutions_agree", NOT_TESTABLE, both(CHAOS_OF_RUNS, alter("attractors", "kind", UNDETERMINED))),
+    ("solutions_agree", NOT_TESTABLE, lambda world: world.update(solvers=world["solvers"].sel(a=[0.08]))),
+    ("solutions_agree", HOLDS, lambda world: world.update(solvers=world["solvers"].sel(a=[0.02, 0.08]))),
     ("solutions_agree", NOT_TESTABLE, alter("agreement", "kind", UNDETERMINED)),
     ("solutions_agree", NOT_TESTABLE, alter("solvers", "difference", np.nan)),
     # A failed run does not agree with any other.
@@ -724,8 +792,10 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("solutions_agree", HOLDS, failed("rk4", a=0.02)),
     ("solutions_agree", HOLDS, alter("agreement", "kind", UNDETERMINED, a=0.02)),
     ("map_is_cheaper", FAILS, alter("solvers", "step_count", 10**9)),
-    ("map_is_cheaper", READING, alter("solvers", "step_count", 10_000, solver="series")),
-    ("map_is_cheaper", LOOSELY, alter("solvers", "step_count", 9_999_000, solver="rk4")),
-    ("map_is_cheaper", HOLDS, alter("solvers", "step_count", 10_010_000, solver="rk4")),
-    ("map_is_cheaper", READING, alter("solvers", "step_count", 3 * 10**7)),
+    # Only the paper's time stepping decides, a million steps per unit time.
+    ("map_is_cheaper", HOLDS, alter("solvers", "step_count", 10_000, solver=["series", "rk4"])),
+    ("map_is_cheaper", HOLDS, alter("solvers", "step_count", 10**7, solver="map")),
+    ("map_is_cheaper", LOOSELY, alter("solvers", "step_count", 10_000_001, solver="map")),
+    ("map_is_cheaper", LOOSELY, alter("solvers", "step_count", 10**8, solver="map")),
+    ("map_is_cheaper", FAILS, alter("solvers", "step_count", 100_000_001, solver="map")),
 ]

@@ -186,7 +186,7 @@ def test_markdown_has_a_row_and_a_section_for_each_claim() -> None:
     independent = sum(not claim.depends_on for claim in CLAIMS.values())
     assert 30 < independent < len(CLAIMS)
     assert text.startswith(
-        f"Of {independent} independent statements, {independent} hold; ten more repeat these or follow from them.\n\n"
+        f"Of {independent} independent statements, {independent} hold; eleven more repeat these or follow from them.\n\n"
         "Depth of the search for attractors: 95 % intervals of basin fractions ±2 %, changes along a located within "
         "0.0006,\nperiodic orbits up to a period of 500.\n\n| statement"
     )
@@ -263,6 +263,7 @@ def test_a_number_holds_within_its_tolerance() -> None:
     assert judge_value(0.144, 0.14, 0.005, 0.01) == "holds"
     assert judge_value(0.148, 0.14, 0.005, 0.01) == "holds loosely"
     assert judge_value(0.16, 0.14, 0.005, 0.01) == judge_value(math.nan, 0.14, 0.005, 0.01) == "fails"
+    assert judge_value(math.inf, 0.14, 0.005, math.inf) == "fails"
 
 
 @pytest.mark.parametrize("missing", quick_first([{"minus", "plus"}, {"minus"}, {"plus"}], 1))

@@ -11,6 +11,7 @@ import pytest
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.report.page import Sources, render
 from burridge_knopoff.study.load import load_study
+from burridge_knopoff.study.study import Study
 from tests.report.conftest import CLAIMS
 from tests.report.test_page import Page
 from tests.small_study import ALL_STUDIES, SMALL, STUDIES
@@ -59,6 +60,11 @@ def test_every_law_has_its_charts_and_its_formula(small, html):
     assert ("is the only one of the study" in page.whole_text) == (len(laws) == 1)
 
 
+def replace_chain(study):
+    """Return a study with springs between the blocks that are twice as strong."""
+    return Study({**study.config, "chain": {**study.config["chain"], "coupling": 2.0}}, study.parameters)
+
+
 def test_a_study_of_curves_alone(small_studies, tmp_path):
     """No attractors, no verdicts: what was left out is said, and no link leads to a file that is not there."""
     small = small_studies("one_law")
@@ -68,6 +74,8 @@ def test_a_study_of_curves_alone(small_studies, tmp_path):
     assert "Left out by the config attractors, bifurcations, edges, basins, phases, claims" in text
     assert "This study does not search for attractors" in text
     assert "No statement of the paper was judged." in text
+    other = rendered(replace_chain(study), small.summaries, None, STORED[:5], tmp_path)
+    assert "No statement of the paper was judged: they are about its own chain of 3 blocks." in Page(other).whole_text
     assert not re.search(r'href="summary/(attractors|basins|claims)', html)
 
 

@@ -117,3 +117,13 @@ def test_the_marks_on_a_basin_map_are_the_states_of_its_model():
             np.testing.assert_allclose(point, position[[0, -1]], rtol=1e-14)
     at_paper = study_of({"minus": {}, "plus": {}, "shifted": shifted}, basins={"a": maps}).marked_states
     assert at_paper == {"minus": [(-0.989, -0.991)] * 3, "plus": [(0.989, -0.991)] * 3, "shifted": [(0.3, 0.4)] * 3}
+
+
+def test_a_study_of_another_chain_is_told_that_it_has_no_claims():
+    line = "claims: none, since they are about the paper's chain of 3 blocks"
+    five = {"own": {"position": [-1.0] * 5, "velocity": 0.1}}
+    for chain, initial in (({"blocks": 5}, five), ({"pulling": 1.0}, {"own": OWN}), ({"ends": "ring"}, {"own": OWN})):
+        assert line in remarks(study_of(initial, chain=chain), {})
+        assert line not in remarks(study_of(initial, chain=chain, without=["claims"]), {})
+    # The paper's chain in other words.
+    assert line not in remarks(study_of({"plus": {}}, chain={"pulling": [1.0, 2.0, 1.0]}), {})

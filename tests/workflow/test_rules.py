@@ -30,7 +30,11 @@ def whole():
             ({"laws": {"linearized": {}}}, {"two_blocks", "catalogue", "edges"}),
             ({"a": [0.31]}, {"basins", "phases", "catalogue", "edges"}),
             ({"laws": {"stribeck": {}, "exponential": {}}}, {"proof", "catalogue", "edges"}),
-            ({"chain": {"threshold": [1.0, 1.1, 1.2]}}, {"two_blocks", "proof", "phases", "catalogue", "edges"}),
+            (
+                {"chain": {"threshold": [1.0, 1.1, 1.2]}},
+                {"two_blocks", "proof", "phases", "catalogue", "edges", "claims"},
+            ),
+            ({"chain": {"coupling": 2}}, {"proof", "phases", "catalogue", "edges", "claims"}),
         ],
         3,
     ),

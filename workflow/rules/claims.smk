@@ -18,7 +18,12 @@ rule claims:
     resources:
         mem_mb=1000,
     params:
-        config=uses(MODELS, "study", "start", "transient", "window", "initial", "motion", stage="claims"),
+        config=uses(
+            MODELS,
+            *("study", "start", "transient", "window", "initial", "motion"),
+            stage="claims",
+            refusal=condition_refusal(STUDY, "has_paper_chain"),
+        ),
         sources=sources("claims"),
         # Another figure leaves the verdicts as they are.
         figures=figures_of_claims,

@@ -6,7 +6,7 @@ rule report:
     input:
         # The page draws the moving blocks of single runs.
         points=[] if STUDY.is_plane else all_point_files,
-        claims=optional("claims", f"{RESULTS}/summary/claims.json"),
+        claims=files_in("summary/claims", suffix=".json"),
         summaries=files_in("summary/", suffix=".nc"),
         figures=files_in("figures/", suffix=".png"),
     output:

@@ -22,6 +22,9 @@ FACTOR = 2.0
 # Number of bisections of the exponent of FACTOR at which a verdict changes, which determine the number to 0.3 %.
 BISECTIONS = 8
 
+#: Correlation of the velocities of the end blocks up to which they are in antiphase; that of branch 2 is about −0.99.
+ANTIPHASE = -0.9
+
 #: {name: summary} of a study.
 Summaries = Mapping[str, "xarray.Dataset"]
 #: Returns the verdict for another value if it is another verdict, "" if not.

@@ -42,6 +42,11 @@ class Claim:
     choices: Mapping[str, Any]
     depends_on: tuple[str, ...] = ()
 
+    @property
+    def is_of_states(self) -> bool:
+        """Whether it is about the motion from the paper's initial states, which the start or rounding may change."""
+        return "initial" in self.parameters and bool(self.reads)
+
     def __call__(self, evidence: Evidence, **parameters: object) -> Verdict:
         """Return the verdict; raises ValueError, one line, if the function asks for a summary that is not declared."""
         return self.function(replace(evidence, summaries=_Declared(evidence.summaries, self)), **parameters)

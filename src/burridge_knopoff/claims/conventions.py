@@ -17,8 +17,10 @@ from burridge_knopoff.claims.verdict import (
     LOOSELY,
     OPEN,
     READING,
+    SILENT,
+    UNDECIDED,
     Measured,
-    UndecidedError,
+    NotTestableError,
     Verdict,
     join_words,
     worst_verdict,
@@ -44,27 +46,49 @@ def judge_conventions(
     own : verdict from the study's runs
     exceptions : where the claim does not hold under the study's convention
     judge : takes the attractors with the branches that the initial states reach under one convention; returns the
-        verdict and the numbers behind it as text; the verdict is "" if nothing is known
+        verdict and the numbers behind it as text; the verdict is "" if the attractors are not known, and SILENT if the
+        statement is about nothing there
 
     A claim depends on convention if it holds, at least loosely, under one convention and fails under another. If the
     study has the contact of the paper, only conventions with this contact count, and what the others give is listed.
+
+    It is undecided if it is so under a convention that counts, unless the others contradict each other already.
+    Raises NotTestableError if the study has no attractors, or if those reached are not known under such a convention.
     """
-    verdicts, others, unknown = {evidence.own_convention: own}, [], []
+    verdicts: dict[str, str] = {evidence.own_convention: own}
+    others: list[str] = []
+    silent: list[str] = []
+    unknown: list[str] = []
+    undecided: list[str] = []
     for name, attractors in evidence.other_conventions():
         judged, numbers = judge(attractors)
-        if judged:
-            verdicts[name] = judged
+        if judged in ("", SILENT):
+            (silent if judged else unknown).append(name)
+        elif judged == UNDECIDED:
+            undecided.append(name)
+            others.append(f"under ({name}) it is undecided: {numbers}")
         else:
-            unknown.append(name)
-        if judged and judged != own:
-            others.append(f"under ({name}) it {judged}: {numbers}")
-    if unknown:
-        others.append(f"it cannot be judged under {join_words([f'({name})' for name in unknown])}")
+            verdicts[name] = judged
+            if judged != own:
+                others.append(f"under ({name}) it {judged}: {numbers}")
+    for words, names in ((f"it {SILENT} under", silent), ("it cannot be judged under", unknown)):
+        if names:
+            others.append(f"{words} {join_words([f'({name})' for name in names])}")
+    counts = [
+        name
+        for name in (*verdicts, *unknown, *undecided)
+        if evidence.config["contact"] != PAPER_CONTACT or name.split(", ")[0] == PAPER_CONTACT
+    ]
+    verdict = CONVENTION if _is_divided({name: verdicts[name] for name in counts if name in verdicts}) else own
+    open_ones = [[f"({name})" for name in names if name in counts] for names in (unknown, undecided)]
+    if verdict != CONVENTION and open_ones[0]:
+        raise NotTestableError(
+            f"under {join_words(open_ones[0])}, which could change the verdict, too few of the attractors reached are "
+            "known"
+        )
+    if verdict != CONVENTION and open_ones[1]:
+        verdict, reason = UNDECIDED, f"Undecided: there are too few values under {join_words(open_ones[1])}. {reason}"
     changes = "; ".join([*exceptions, *others])
-    decisive = verdicts
-    if evidence.config["contact"] == PAPER_CONTACT:
-        decisive = {name: verdict for name, verdict in verdicts.items() if name.split(", ")[0] == PAPER_CONTACT}
-    verdict = CONVENTION if _is_divided(decisive) else own
     return Verdict(verdict, reason, measured, changes, dict(sorted(verdicts.items())), own)
 
 
@@ -74,14 +98,14 @@ def combine_readings(
     """Return the verdict of a claim with more than one reading, from the verdict under each; the first one is its own.
 
     The claim is ambiguous if it holds, at least loosely, under one reading and fails under another. Otherwise the
-    worst verdict decides. Raises UndecidedError if a reading is open and could contradict the others.
+    worst verdict decides. It is undecided if a reading is open and could contradict the others.
     """
     own = next(iter(verdicts.values()))
     divided = _is_divided(verdicts)
     unresolved = [reading for reading, verdict in verdicts.items() if verdict in OPEN]
-    if unresolved and not divided:
-        raise UndecidedError(f"there are too few values for the reading «{'» and «'.join(unresolved)}»")
-    verdict = READING if divided else worst_verdict(verdicts.values())
+    verdict = READING if divided else UNDECIDED if unresolved else worst_verdict(verdicts.values())
+    if verdict == UNDECIDED:
+        reason = f"Undecided: there are too few values for the reading «{'» and «'.join(unresolved)}». {reason}"
     return Verdict(verdict, reason, measured, "; ".join(changes), verdicts, own)
 
 

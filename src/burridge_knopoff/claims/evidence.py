@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from burridge_knopoff.claims.range import Range
-from burridge_knopoff.claims.verdict import NotTestableError, Verdict
+from burridge_knopoff.claims.verdict import NotTestableError, Verdict, join_words
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_V, has_paper_numbers, initial_state
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _T = TypeVar("_T")
 
-# A statement on a range of a is judged only with at least this many values of a.
+# A statement on a range of a is judged only with at least this many values of a, which have to cover the range.
 MIN_VALUES = 10
 
 #: {dimension of a summary with its own values of a: key of the config that has them}
@@ -68,6 +68,14 @@ class Evidence:
             )
             for first in (0, 1)
         ]
+
+    def check_variants(self) -> None:
+        """Raise NotTestableError if nothing tells what other starts and states that round to the paper's lead to."""
+        if "attractors" not in [*self.summaries]:
+            raise NotTestableError(
+                "the study has no summary attractors.nc, by which another start, or states that round to the paper's, "
+                "could change the verdict"
+            )
 
     def check_setting(self) -> None:
         """Raise NotTestableError if the driver velocity, springs, masses or thresholds are not the paper's."""
@@ -148,14 +156,11 @@ class Evidence:
         if not has_paper_numbers(initial_state(initial, **states[initial])):
             raise NotTestableError(f"the study's initial state {initial} is not the paper's")
 
-    def choose(self, dataset: xarray.Dataset, a: Range, least: int = MIN_VALUES) -> xarray.Dataset:
-        """Return the part of a summary in a range of a; raises NotTestableError for fewer values than `least`."""
-        chosen = a.choose(dataset["a"].values)
-        if chosen.sum() < least:
-            owner = next((key for dimension, key in _KEYS.items() if dimension in dataset.dims), "the study")
-            raise NotTestableError(
-                f"a statement on all {a} needs {least} values of a; {owner} has {chosen.sum()} there"
-            )
+    def choose(self, dataset: xarray.Dataset, a: Range) -> xarray.Dataset:
+        """Return the part of a summary in a range of a; raises NotTestableError unless its values cover the range."""
+        values = dataset["a"].values
+        check_covered(values, a, next((key for name, key in _KEYS.items() if name in dataset.dims), "the study"))
+        chosen = a.choose(values)
         return self.cached(("a", chosen.tobytes()), lambda: dataset.isel(a=chosen), dataset)
 
     def at(self, dataset: xarray.Dataset, a: float) -> xarray.Dataset:
@@ -178,10 +183,8 @@ class Evidence:
     def other_conventions(self) -> Iterator[tuple[str, xarray.Dataset]]:
         """Yield («contact, start», the attractors with the branches of the initial states) for each convention.
 
-        The study's own is left out; a study without attractors has none.
+        The study's own is left out. Raises NotTestableError if the study has no attractors.
         """
-        if "attractors" not in self.summaries:
-            return
         self.check_blocks()
         attractors = self.summary("attractors")
         for contact in attractors["contact"].values:
@@ -219,6 +222,18 @@ class Evidence:
             raise ValueError(f"orbits.nc: critical_a: got {critical!r}, expected {low!r} to {high!r} by proof.nc")
         # Like a_c, the midpoint lies between the two, even if it is rounded.
         return middle, high - low
+
+
+def check_covered(values: np.ndarray, a: Range, owner: str) -> None:
+    """Raise NotTestableError, with what is missing, unless values of a cover a range.
+
+    owner : what has the values, for the message
+    """
+    if gaps := a.missing(values):
+        missing = join_words([gap.words for gap in gaps])
+        raise NotTestableError(f"a statement on all {a} needs values of a {missing}, where {owner} has none")
+    if a.is_bounded and (count := int(a.choose(values).sum())) < MIN_VALUES:
+        raise NotTestableError(f"a statement on all {a} needs {MIN_VALUES} values of a; {owner} has {count} there")
 
 
 def finite(values: Any) -> np.ndarray:

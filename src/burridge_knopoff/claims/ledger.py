@@ -19,7 +19,12 @@ from burridge_knopoff.claims.margins import changing_choices
 from burridge_knopoff.claims.other_tolerances import other_tolerances
 from burridge_knopoff.claims.paper import CLAIMS
 from burridge_knopoff.claims.range import Range
-from burridge_knopoff.claims.rounding import count_rounding, describe_rounding, rounded_state_changes
+from burridge_knopoff.claims.rounding import (
+    count_changes,
+    describe_rounding,
+    other_start_changes,
+    rounded_state_changes,
+)
 from burridge_knopoff.claims.verdict import (
     NOT_TESTABLE,
     OPEN,
@@ -42,6 +47,8 @@ def judge(claim: Claim, evidence: Evidence, parameters: Mapping[str, Any] | None
     try:
         evidence.check_setting()
         evidence.check_laws(_claim_laws(parameters))
+        if claim.is_of_states:
+            evidence.check_variants()
         return claim(evidence, **parameters)
     except UndecidedError as error:
         return Verdict(UNDECIDED, f"Undecided: {error}.")
@@ -55,14 +62,23 @@ def _claim_laws(parameters: Mapping[str, Any]) -> list[str]:
 
 
 def _add_changes(claim: Claim, evidence: Evidence, verdict: Verdict, others: Sequence[tuple[str, Evidence]]) -> Verdict:
-    """Return a verdict with the choices that would change it, and where rounded states reach another attractor."""
+    """Return a verdict with the choices that would change it, and where other states or starts change the attractor.
+
+    Under other starts a claim may have been judged already; otherwise the values of a are counted.
+    """
     changes = [verdict.changes] if verdict.changes else []
     a = claim.parameters.get("a")
     if at := claim.parameters.get("at"):
         a = Range(first=at, last=at)
-    if verdict.verdict not in OPEN and a and "initial" in claim.parameters and claim.topic != "model":
+    if verdict.verdict not in OPEN and a and claim.is_of_states:
         states = np.atleast_1d(claim.parameters["initial"]).tolist()
-        changes += count_rounding(rounded_state_changes(evidence, states, _claim_laws(claim.parameters), a))
+        laws = _claim_laws(claim.parameters)
+        if evidence.own_convention not in verdict.conventions:
+            starts = other_start_changes(evidence, states, laws, a)
+            changes += count_changes(starts, "with the other start {state} reaches")
+        changes += count_changes(
+            rounded_state_changes(evidence, states, laws, a), "some states that round to {state} reach"
+        )
     choices = changing_choices(claim, partial(judge, claim), evidence, verdict, others)
     return replace(verdict, changes="; ".join(changes), changing_choices=choices)
 

@@ -1,4 +1,4 @@
-"""The values of a at which the last printed digit of the paper's initial states decides which attractor is reached."""
+"""The values of a at which the start, or the last printed digit of an initial state, decides the attractor reached."""
 
 from __future__ import annotations
 
@@ -38,6 +38,21 @@ def rounded_state_changes(
     return values
 
 
+def other_start_changes(
+    evidence: Evidence, initial: Sequence[str], laws: Sequence[str], a: Range
+) -> dict[tuple[str, str], xarray.DataArray]:
+    """Return the values of a at which the paper's states reach another attractor with the other start.
+
+    The contact is that of the study. Returned as by `rounded_state_changes`.
+    """
+    attractors = evidence.summary("attractors").sel(contact=evidence.config["contact"])
+    branch = attractors["initial_branch"].isel(a=a.choose(attractors["a"].values))
+    own = branch.sel(start=evidence.config["start"], drop=True)
+    differs = ((branch != own) & (branch >= 0) & (own >= 0)).any("start")
+    places = {(state, law): differs.sel(law=law, initial=state, drop=True) for state in initial for law in laws}
+    return {place: values for place, values in places.items() if values.any()}
+
+
 def describe_rounding(evidence: Evidence) -> list[str]:
     """Describe all values of a at which the last digit of the paper's initial states decides, a text for each state."""
     try:
@@ -58,12 +73,15 @@ def describe_rounding(evidence: Evidence) -> list[str]:
     return texts
 
 
-def count_rounding(values: Mapping[tuple[str, str], xarray.DataArray]) -> list[str]:
-    """Say for each state at how many of the judged values of a its last digit decides, see `describe_rounding`."""
+def count_changes(values: Mapping[tuple[str, str], xarray.DataArray], words: str) -> list[str]:
+    """Say for each state at how many of the judged values of a another attractor is reached.
+
+    values : by (state, law), see `rounded_state_changes`; words : what reaches it, in which {state} is filled in
+    """
     texts = []
     for state in dict.fromkeys(name for name, _ in values):
         counts = [(int(differs.sum()), law) for (name, law), differs in values.items() if name == state]
         first = format_count(counts[0][0], "value") + " of a"
-        words = [f"{count if number else first} ({law})" for number, (count, law) in enumerate(counts)]
-        texts.append(f"some states that round to {state} reach another attractor at {join_words(words)}")
+        numbers = [f"{count if number else first} ({law})" for number, (count, law) in enumerate(counts)]
+        texts.append(f"{words.format(state=state)} another attractor at {join_words(numbers)}")
     return texts

@@ -18,6 +18,8 @@ from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.outcomes import Reached, Runs
 from burridge_knopoff.claims.range import Range
 from burridge_knopoff.claims.verdict import (
+    FAILS,
+    SILENT,
     Measured,
     NotTestableError,
     Share,
@@ -193,9 +195,14 @@ def for_all(
     def under(attractors: xarray.Dataset) -> tuple[str, str]:
         assert reached is not None
         cases = reached(Reached(evidence, evidence.choose(attractors, a), initial)).cases()
-        known = [case for case in cases if case.is_decided(loose)]
+        concerned = [case for case in cases if np.any(case.applies)]
+        if not concerned:
+            return SILENT, ""
+        known = [case for case in concerned if case.is_decided(loose)]
         shares = {case.name: case.share for case in known}
         verdict, numbers = judge_shares(shares, loose)
+        if len(known) < len(concerned) and verdict != FAILS:
+            return "", numbers
         is_about_all = known and all(case.share.count == len(case.a) for case in known)
         return verdict, at_values(shares) if is_about_all else numbers
 

@@ -36,6 +36,10 @@ FEW = 10
 _RANK = (HOLDS, LOOSELY, UNDECIDED, NOT_TESTABLE, FAILS)
 
 
+#: In place of a verdict under a convention: the statement is about nothing there, so that it cannot be false.
+SILENT = "is about nothing"
+
+
 class NotTestableError(Exception):
     """A claim that the study's data cannot judge; the message gives the reason."""
 
@@ -190,11 +194,10 @@ def judge_worst_share(shares: Mapping[str, Share], loose: float) -> str:
 
 
 def judge_shares(shares: Mapping[str, Share], loose: float) -> tuple[str, str]:
-    """Return (the verdict for the worst share, the shares as text); the verdict is "" if it is open."""
+    """Return (the verdict for the worst share, the shares as text); the verdict is "" without shares."""
     if not shares:
         return "", ""
-    verdict = worst_verdict(judge_share(share, loose) for share in shares.values())
-    return ("" if verdict == UNDECIDED else verdict), format_shares(shares)
+    return worst_verdict(judge_share(share, loose) for share in shares.values()), format_shares(shares)
 
 
 def judge_value(value: float, claimed: float, tolerance: float, loose: float) -> str:

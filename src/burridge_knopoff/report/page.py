@@ -128,6 +128,7 @@ def _content_over_a(
     commands = Commands(study, arguments)
     return {
         "convention": overview.convention(verdicts.setting),
+        "paper_chain": study.has_paper_chain,
         "signs": SIGNS,
         "meanings": MEANINGS,
         "rounding": ROUNDING,

@@ -28,7 +28,7 @@ MEANINGS = {
     READING: "true if the wording is taken one way, false if taken another; each way is a reading",
     FAILS: "false: fewer than nine in ten, or farther than twice the tolerance",
     UNDECIDED: "too close to call: the study has data, but too few to decide",
-    NOT_TESTABLE: "the study has no data for it",
+    NOT_TESTABLE: "the study did not compute all that the verdict depends on",
 }
 
 

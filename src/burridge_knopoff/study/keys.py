@@ -12,6 +12,7 @@ _CONDITIONS = {
     "has_several_laws": "a second law in `laws`",
     "has_synchronized_orbit": "a mirror-symmetric chain of 3 blocks",
     "has_one_chain": "the same chain at all points",
+    "has_paper_chain": "the paper's chain of 3 blocks",
 }
 
 

@@ -40,6 +40,8 @@ def _part_remarks(study: Study, config: Mapping[str, Any]) -> Iterator[str]:
         yield "one block: J = 0; no basins, phases or synchronized orbit, which need two end blocks"
     elif config.get("basins") and "basins" not in study.omitted_stages and not study.basin_maps:
         yield "basins: no map, since no default value of basins.a is on the grid; set basins.a"
+    if "claims" not in study.omitted_stages and not study.has_paper_chain:
+        yield "claims: none, since they are about the paper's chain of 3 blocks"
 
 
 def _state_remarks(study: Study) -> Iterator[str]:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.initial import InitialState, initial_state
 from burridge_knopoff.model.model import Model
@@ -140,6 +141,11 @@ class Study:
     def is_mirror_symmetric(self) -> bool:
         """Whether the chain is its own mirror image."""
         return self.model(self.laws[0], self.shown_a, **self.other_values[0]).chain.is_mirror_symmetric
+
+    @property
+    def has_paper_chain(self) -> bool:
+        """Whether the chain is that of the paper, the only one that its claims are about."""
+        return self.model(self.laws[0], self.shown_a, **self.other_values[0]).chain.is_equivalent_to(Chain(3))
 
     @property
     def has_synchronized_orbit(self) -> bool:

@@ -6,7 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.choice import Close, Correlation, InnerShare, LooseShare, Opposite, Samples, StateShare
+from burridge_knopoff.claims.choice import (
+    ANTIPHASE,
+    Close,
+    Correlation,
+    InnerShare,
+    LooseShare,
+    Opposite,
+    Samples,
+    StateShare,
+)
 from burridge_knopoff.claims.claim import claim
 from burridge_knopoff.claims.conventions import combine_readings
 from burridge_knopoff.claims.evidence import Evidence
@@ -18,9 +27,12 @@ from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
     LOOSELY,
+    NOT_TESTABLE,
     OPEN,
+    UNDECIDED,
     Measured,
     NotTestableError,
+    UndecidedError,
     Verdict,
     at_values,
     count_share,
@@ -158,11 +170,11 @@ def plus_under_one_convention(evidence: Evidence, *, claims: tuple[str, ...] = O
     blocks may stick at τ = 0. Here a symmetric contact counts too, in case the paper's program used it.
 
     claims : by name; each has to be judged before this one. This claim holds loosely if some of them hold loosely. A
-        convention under which one of them is not judged does not count.
+        convention under which one of them is not judged is open, unless another fails there.
     """
     verdicts = {name: evidence.verdicts[name] for name in claims}
     for verdict in verdicts.values():
-        if verdict.verdict in OPEN:
+        if verdict.verdict == NOT_TESTABLE or (verdict.verdict in OPEN and not verdict.conventions):
             raise NotTestableError(verdict.reason.partition(": ")[2].removesuffix("."))
     conventions = sorted({convention for verdict in verdicts.values() for convention in verdict.conventions})
     if not conventions:
@@ -176,13 +188,15 @@ def plus_under_one_convention(evidence: Evidence, *, claims: tuple[str, ...] = O
                 f"claims that hold, of {len(judged)} judged: {convention}", sum(v != FAILS for v in judged.values())
             )
         )
-        together[convention] = worst_verdict(judged.values()) if len(judged) == len(claims) else FAILS
+        together[convention] = worst_verdict([*judged.values(), *[UNDECIDED] * (len(judged) < len(claims))])
         against = [name for name, verdict in judged.items() if verdict == FAILS]
         open_ones = [name for name in claims if name not in judged]
         parts = [f"{join_words(against)} {'fail' if len(against) > 1 else 'fails'}"] if against else []
         parts += [f"{join_words(open_ones)} cannot be judged"] if open_ones else []
         texts.append(f"under ({convention}) {', and '.join(parts) or 'all hold'}")
-    best = min(together.values(), key=(HOLDS, LOOSELY, FAILS).index)
+    best = min(together.values(), key=(HOLDS, LOOSELY, UNDECIDED, FAILS).index)
+    if best == UNDECIDED:
+        raise UndecidedError("; ".join(texts))
     under = [convention for convention, verdict in together.items() if verdict == best]
     reason = (
         f"All of them hold{' loosely' if best == LOOSELY else ''} under {join_words([f'({name})' for name in under])}."
@@ -200,7 +214,7 @@ def phases_decide(
     inner_share: InnerShare = 0.0,
     close: Close = 30.0,
     opposite: Opposite = 180.0,
-    correlation: Correlation = -0.5,
+    correlation: Correlation = ANTIPHASE,
     share: StateShare = 0.9,
     loose_share: LooseShare = 0.9,
 ) -> Verdict:
@@ -223,8 +237,15 @@ def phases_decide(
     evidence.check_blocks()
     phases = evidence.summary("phases")
     evidence.choose(phases, a)
+    if not (phases["inner_share"].values != inner_share).any():
+        raise NotTestableError(
+            f"phases.inner_share needs a second value beside {inner_share:g}: whether the middle block oscillates "
+            "could change the verdict"
+        )
     criteria = Criteria(a, close, opposite, correlation, share, loose_share)
     judged = PhaseOutcomes(phases, inner_share, criteria)
+    if judged.without_backward_slip.all():
+        raise NotTestableError("phases.amplitude needs a value at which some block slips backward")
     measured: list[Measured] = []
     changes = []
     for k, size in enumerate(judged.amplitude):

@@ -11,7 +11,7 @@ import xarray
 from burridge_knopoff.claims.choice import LooseShare, LooseTolerance, Points, Tolerance
 from burridge_knopoff.claims.claim import claim
 from burridge_knopoff.claims.conventions import judge_conventions
-from burridge_knopoff.claims.evidence import MIN_VALUES, Evidence
+from burridge_knopoff.claims.evidence import Evidence, check_covered
 from burridge_knopoff.claims.outcomes import PERIODIC_KINDS, Reached, Runs, reached_attractor
 from burridge_knopoff.claims.range import ABOVE, BELOW, SYNCHRONY, Range
 from burridge_knopoff.claims.statement import Statement, Truth, for_all
@@ -203,10 +203,11 @@ def transition(
         search = refined.sel(law=law)
         grid = search["a"].values
         searched = (search["branch"].values >= 0) & (grid > 0.0)[:, None]
-        if searched.any(axis=1).sum() < MIN_VALUES:
-            raise NotTestableError(f"attractors are known at fewer than {MIN_VALUES} values of a under the {law} law")
         chaotic = np.any(searched & np.isin(search["kind"].values, CHAOS), axis=1)
         first = int(np.argmax(chaotic)) if chaotic.any() else len(grid)
+        # Attractors have to be known from 0 to the chaos, or well beyond the claimed value.
+        top = grid[first] if chaotic.any() else claimed + 2.0 * loose
+        check_covered(grid[searched.any(axis=1)], Range(above=0.0, last=float(top)), "the search for attractors")
         low, high = float(np.nanmax(grid)), np.inf
         if chaotic.any():
             low, high = grid[first - 1] if first else 0.0, grid[first]

@@ -21,15 +21,21 @@ from burridge_knopoff.claims.verdict import (
     Measured,
     NotTestableError,
     Verdict,
+    count_share,
     describe_where,
     extremes,
+    format_shares,
     judge_share,
     judge_value,
+    worst_verdict,
 )
 from burridge_knopoff.dataset.variables import Answer
-from burridge_knopoff.motion.kind import SYNCHRONOUS, merge_chaos
+from burridge_knopoff.motion.kind import SYNCHRONOUS, MotionKind, is_same_result, merge_chaos
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.judgement import excess, same_mean
+
+#: The two readings of a nonlinearity that is not relevant.
+ON_ATTRACTORS, FROM_STATES = "on the attractors", "from the paper's states"
 
 
 @claim("Introduction; Results, Fig. 3", "agreement", "agreement")
@@ -42,10 +48,10 @@ def laws_agree(
 ) -> Verdict:
     """Linearizing the friction law does not change the results, ⟨J⟩ against a, for a < 0.1.
 
-    "A close correspondence" of two figures of ⟨J⟩: on their common scale, or at each a, for both curves together. The
-    study's relative tolerance of agreement may be applied to the largest ⟨J⟩ in the range, as curves in a figure
-    correspond: those of both states have one scale. Or it may be applied to ⟨J⟩ at each a, as in agreement.nc: curves
-    that coincide in a figure may then differ where ⟨J⟩ is small.
+    "A close correspondence" of two figures of ⟨J⟩. The study's relative tolerance of agreement may be applied to the
+    largest ⟨J⟩ in the range, as curves in a figure correspond: those of both states have one scale. Or it may be
+    applied to ⟨J⟩ at each a, as in agreement.nc: curves that coincide in a figure may then differ where ⟨J⟩ is small.
+    The curve of each state is judged for itself.
     """
     laws = _law_comparison(evidence, initial, a)
     scale = float(laws["mean_distance"].max())
@@ -103,7 +109,7 @@ def _judge_agreement(
     loose_share: float,
     measured: Sequence[Measured] = (),
 ) -> Verdict:
-    """Judge whether the laws agree, by the points of all states together, as a figure shows them.
+    """Judge whether the laws agree, from each state for itself.
 
     words : what the readings qualify
     readings : Answer at each point, over (initial, a), under each reading
@@ -111,15 +117,11 @@ def _judge_agreement(
     verdicts, texts, numbers, exceptions = {}, [], [], []
     for reading, agrees in readings.items():
         truth = Truth(agrees == Answer.YES, agrees.isin((Answer.YES, Answer.NO)))
-        cases = list(truth.cases())
-        states = Statement(evidence, [case for case in cases if case.is_known.any()], loose_share)
+        cases = list(truth.cases("the laws could not be compared from {initial} {where}"))
+        states = decided(Statement(evidence, cases, loose_share))
         unknown = [text for case in cases for text in describe_where("undetermined", case.a, ~case.is_known, case.name)]
-        grid = np.tile(agrees["a"].values, agrees.sizes["initial"])
-        right, known = (part.transpose("initial", "a").values.ravel() for part in (truth.is_true, truth.is_known))
-        points = Case("points", grid, right, known, f"the laws could not be compared: {'; '.join(unknown)}")
-        share = decided(Statement(evidence, [points], loose_share)).share
-        verdicts[reading] = judge_share(share, loose_share)
-        texts.append(f"{reading}, at {share} of the points (initial state, a) with {a}, {states} ({verdicts[reading]})")
+        verdicts[reading] = worst_verdict(judge_share(share, loose_share) for share in states.shares.values())
+        texts.append(f"{reading}, {states.at(a)} ({verdicts[reading]})")
         numbers += states.measured(f"share of a at which the laws agree, {reading}", partial(_parting, reading))
         exceptions += [f"{reading}, {text}" for text in (*states.exceptions("they differ"), *unknown)]
     return combine_readings(verdicts, f"{words}: {'; '.join(texts)}.", [*numbers, *measured], exceptions)
@@ -129,6 +131,79 @@ def _parting(reading: str, case: Case) -> Iterator[Measured]:
     """Yield the smallest a at which the laws differ."""
     if len(differ := case.a[case.is_known & ~case.is_true]):
         yield Measured(f"smallest a at which they differ, {reading}, {case.name}", float(differ[0]))
+
+
+@claim(
+    "Conclusions",
+    "agreement",
+    "agreement",
+    "attractors",
+    depends_on=("sticks_unavoidable", "laws_agree_in_kind"),
+)
+def stick_slip_alone(
+    evidence: Evidence,
+    *,
+    initial: tuple[str, ...] = ("minus", "plus"),
+    a: Range = BELOW,
+    loose_share: LooseShare = 0.9,
+) -> Verdict:
+    """For a < 0.1 the only relevant nonlinearity is that of stick-slip.
+
+    It is relevant if some block stops on every attractor: while all slip, linearized motion grows without bound. That
+    of the friction law is not relevant if both laws give the same result, synchrony, other regular motion or chaos:
+    on the same attractors, branch by branch, or from the paper's states, which may lie near a boundary of basins that
+    the law moves.
+    """
+    attractors = evidence.choose(evidence.own_attractors(), a)
+    stopping = {}
+    for law in PAPER_LAWS:
+        slots = attractors.sel(law=law)
+        stops = (slots["stop_rate"] > 0.0).any("block").values[slots["branch"].values >= 0]
+        if not len(stops):
+            raise NotTestableError(f"no attractor is known under the {law} law with {a}")
+        stopping[law] = count_share(stops)
+    same = _law_comparison(evidence, initial, a)["same_kind"]
+    truths = {
+        ON_ATTRACTORS: _same_attractors(attractors),
+        FROM_STATES: Truth(same == Answer.YES, same.isin((Answer.YES, Answer.NO))),
+    }
+    of_stops = worst_verdict(judge_share(share, loose_share) for share in stopping.values())
+    readings, measured, texts, exceptions = {}, [], [], []
+    for reading, truth in truths.items():
+        cases = list(truth.cases("the results under the two laws are not known {where}"))
+        statement = decided(Statement(evidence, cases, loose_share))
+        of_laws = (judge_share(share, loose_share) for share in statement.shares.values())
+        readings[reading] = worst_verdict([of_stops, *of_laws])
+        measured += statement.measured(f"share of a at which the laws have the same result, {reading}")
+        texts.append(f"{reading}, {statement.at(a)} ({readings[reading]})")
+        exceptions += [f"{reading}, {text}" for text in statement.exceptions("they differ", "undetermined")]
+    measured += [
+        Measured(f"share of attractors on which some block stops, {law}", share.value)
+        for law, share in stopping.items()
+    ]
+    reason = (
+        f"Some block stops on {format_shares(stopping)} of the attractors. Both laws have the same result "
+        f"{'; '.join(texts)}."
+    )
+    return combine_readings(readings, reason, measured, exceptions)
+
+
+def _same_attractors(attractors: xarray.Dataset) -> Truth:
+    """Return at which a the laws have the same branches of attractors, with the same result on each; over a."""
+    is_same, is_known = [], []
+    for place in range(attractors.sizes["a"]):
+        kinds = []
+        for law in PAPER_LAWS:
+            slots = attractors.isel(a=place).sel(law=law)
+            branch, kind = slots["branch"].values, merge_chaos(slots["kind"].values)
+            kinds.append({int(number): int(kind[branch == number][0]) for number in branch[branch >= 0]})
+        left, right = kinds
+        is_known.append(bool(left and right) and MotionKind.UNDETERMINED not in (*left.values(), *right.values()))
+        is_same.append(
+            left.keys() == right.keys()
+            and bool(is_same_result(np.array([*left.values()]), np.array([right[number] for number in left])).all())
+        )
+    return Truth(*(xarray.DataArray(values, {"a": attractors["a"]}, "a") for values in (is_same, is_known)))
 
 
 @claim("Introduction; The linearization", "friction_laws", "mean_distance")

@@ -10,8 +10,8 @@ import numpy as np
 from burridge_knopoff.claims.choice import Detuning, LooseShare, ModeDeviation
 from burridge_knopoff.claims.claim import claim
 from burridge_knopoff.claims.conventions import combine_readings
-from burridge_knopoff.claims.evidence import MIN_VALUES, Evidence
-from burridge_knopoff.claims.range import BELOW, Range
+from burridge_knopoff.claims.evidence import MIN_VALUES, Evidence, check_covered
+from burridge_knopoff.claims.range import BELOW, POSITIVE, Range
 from burridge_knopoff.claims.verdict import (
     UNDECIDED,
     Measured,
@@ -87,7 +87,9 @@ def branch_locked(
     measured, where = [], []
     for law in PAPER_LAWS:
         of_law = rotation.sel(law=law)
-        in_range = a.choose(of_law["a"].values) & (of_law["in_grid"].values == 1)
+        in_grid = of_law["in_grid"].values == 1
+        check_covered(of_law["a"].values[in_grid], a, "the study")
+        in_range = a.choose(of_law["a"].values) & in_grid
         for branch in rotation["branch"].values.tolist():
             name = f"branch {branch}, {law}"
             detuned = of_law.sel(branch=branch, detuning=detuning)
@@ -163,7 +165,7 @@ def _locked_to_middle(rotation: xarray.Dataset, a: Range, law: str) -> tuple[lis
 
 
 @claim("Conclusions", "bifurcations", "bifurcations", "refined")
-def locking_precedes_chaos(evidence: Evidence, *, loose_share: LooseShare = 0.9) -> Verdict:
+def locking_precedes_chaos(evidence: Evidence, *, a: Range = POSITIVE, loose_share: LooseShare = 0.9) -> Verdict:
     """Frequency locking precedes the transition to chaos.
 
     Frequency locking is that of a torus: the branch moves on a torus, locks to a periodic orbit, and then becomes
@@ -189,7 +191,8 @@ def locking_precedes_chaos(evidence: Evidence, *, loose_share: LooseShare = 0.9)
         if name not in laws:
             raise NotTestableError(f"the study has no {name} law")
         refined = evidence.summary("refined").sel(law=name)
-        is_law = bifurcations["law"].values == name
+        check_covered(refined["a"].values[refined["in_grid"].values == 1], a, "the study")
+        is_law = (bifurcations["law"].values == name) & a.choose(bifurcations["grid_high"].values)
         changes = is_law & (bifurcations["change"].values != Change.PASSED) & np.isin(after, CHAOS)
         changes &= ~_was_chaotic(bifurcations, refined)
         onset = changes & np.isin(before, (MotionKind.SYNCHRONIZED, *REGULAR))
@@ -233,7 +236,7 @@ def locking_precedes_chaos(evidence: Evidence, *, loose_share: LooseShare = 0.9)
                 )
     verdicts = {reading: worst_verdict(of_laws) for reading, of_laws in readings.items()}
     counts = "; ".join(f"{reading} in {join_words(texts[reading])} cases ({verdicts[reading]})" for reading in readings)
-    reason = f"Where a branch of attractors becomes chaotic as a grows, this precedes chaos: {counts}."
+    reason = f"Where a branch of attractors becomes chaotic as a grows, with {a}, this precedes chaos: {counts}."
     return combine_readings(verdicts, reason, measured, remarks)
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.choice import Correlation, LooseShare, LooseTolerance, Tolerance
+from burridge_knopoff.claims.choice import ANTIPHASE, Correlation, LooseShare, LooseTolerance, Tolerance
 from burridge_knopoff.claims.claim import claim
 from burridge_knopoff.claims.conventions import combine_readings, judge_conventions
 from burridge_knopoff.claims.evidence import Evidence, finite
@@ -169,7 +169,7 @@ def antiphase(
     initial: str = "plus",
     law: str = "linearized",
     at: float = 0.08,
-    correlation: Correlation = -0.5,
+    correlation: Correlation = ANTIPHASE,
 ) -> Verdict:
     """From plus the velocities of the end blocks are in antiphase at a = 0.08.
 
@@ -206,7 +206,8 @@ def antiphase_persists(
 ) -> Verdict:
     """If the end blocks are in antiphase, from plus, this persists in time for a < 0.1.
 
-    Antiphase means a negative correlation of their velocities in the window. It persists if the run is on its
+    Antiphase means here a negative correlation of their velocities in the window, as it does loosely in `antiphase`. It
+    persists if the run is on its
     attractor, by `settled` of agreement.nc: a transient would be followed by another motion.
     """
 

@@ -117,7 +117,9 @@ def plus_not_periodic(
 
     def truth(motion: Runs | Reached) -> Truth:
         count, kind = (part.sel(law=[law], initial=initial) for part in (motion.section["count"], motion.kind))
-        return Truth(~kind.isin(PERIODIC_KINDS), kind != MotionKind.UNDETERMINED, count > points)
+        known = (kind != MotionKind.UNDETERMINED) & count.notnull()
+        # An unknown section may be a cloud.
+        return Truth(~kind.isin(PERIODIC_KINDS), known, ~(count <= points))
 
     unknown = f"the kind of motion from {initial} under the {law} law is undetermined {{where}}"
     count = Runs(evidence, [initial], a).section["count"].sel(law=law, initial=initial)

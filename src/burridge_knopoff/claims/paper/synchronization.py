@@ -12,7 +12,7 @@ from burridge_knopoff.claims.claim import claim
 from burridge_knopoff.claims.conventions import combine_readings, judge_conventions
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.outcomes import Reached, Runs, reached_attractor
-from burridge_knopoff.claims.range import SYNCHRONY, Range
+from burridge_knopoff.claims.range import BELOW, SYNCHRONY, Range
 from burridge_knopoff.claims.statement import Case, Truth, for_all
 from burridge_knopoff.claims.verdict import (
     FAILS,
@@ -93,10 +93,12 @@ def edge_of_synchrony(
     claimed: float,
     tolerance: float,
     loose: float,
+    a: Range,
     end: Literal["lower", "upper"] = "upper",
 ) -> Verdict:
     """Judge one end of the range of a in which an initial state synchronizes, under both laws.
 
+    a : range that has to be covered by values of a, so that no other end of synchrony is missed there
     end : lower or upper
 
     It lies between two neighbours of the grid; the lower end may lie between 0, where friction is constant, and the
@@ -109,6 +111,7 @@ def edge_of_synchrony(
     side = "up to there" if is_upper else "from there on"
     readings: dict[str, list[str]] = {f"only {side}": [], f"at least {side}": []}
     measured, texts, losses = [], [], []
+    evidence.choose(evidence.own_attractors(), a)
     for law, grid, synchronized in _reached_synchrony(evidence, initial):
         if not synchronized.any():
             raise NotTestableError(f"no a with synchrony from {initial} is known, {law} law")
@@ -147,12 +150,13 @@ def upper_edge(
     claimed: float = 0.08,
     tolerance: Tolerance = 0.005,
     loose: LooseTolerance = 0.01,
+    a: Range = BELOW,
 ) -> Verdict:
     """From minus, there is synchrony up to a = 0.08.
 
     "The synchronization appears for the parameter a between 0.005 and 0.08": only there, or at least there.
     """
-    return edge_of_synchrony(evidence, initial=initial, end="upper", claimed=claimed, tolerance=tolerance, loose=loose)
+    return edge_of_synchrony(evidence, initial, claimed, tolerance, loose, a, "upper")
 
 
 @claim("Results, Fig. 3", "mean_distance", "attractors", "orbits", "proof")
@@ -163,12 +167,13 @@ def lower_edge(
     claimed: float = 0.005,
     tolerance: Tolerance = 0.0005,
     loose: LooseTolerance = 0.001,
+    a: Range = BELOW,
 ) -> Verdict:
     """From minus, synchrony appears from a = 0.005 on.
 
     The lower end of the range in `upper_edge`.
     """
-    return edge_of_synchrony(evidence, initial=initial, end="lower", claimed=claimed, tolerance=tolerance, loose=loose)
+    return edge_of_synchrony(evidence, initial, claimed, tolerance, loose, a, "lower")
 
 
 def _judge_edge(low: float, high: float, claimed: float, tolerance: float, loose: float) -> str:
