@@ -6,10 +6,10 @@
 // batch begins and ends with the first orthonormalisation after its edge.
 //
 // Where several blocks stop or start at one instant, the derivative of the flow may depend on the order in which a
-// perturbation lets them do so; the flow then has directional derivatives only. Two changes commute at first order unless
-// a dashpot joins their blocks and one of them starts with a drop of friction: at once the dashpot changes the rate of
-// the force on the other. Under quasi-static loading the order always matters: the driver stops at the first start.
-// `Exponents` maps perturbations in one order, and reports the blocks for which it matters.
+// perturbation lets them do so; the flow then has directional derivatives only. Two changes commute at first order
+// unless a dashpot joins their blocks and one of them starts with a drop of friction: at once the dashpot changes the
+// rate of the force on the other. Under quasi-static loading the order always matters: the driver stops at the first
+// start. `Exponents` maps perturbations in one order, and reports the blocks for which it matters.
 //
 // References: G. Benettin, L. Galgani, A. Giorgilli and J.-M. Strelcyn, Meccanica 15 (1980) 9-30; S. A. Burden,
 // S. S. Sastry, D. E. Koditschek and S. Revzen, SIAM J. Appl. Dyn. Syst. 15 (2016) 1227.
@@ -85,7 +85,8 @@ class Exponents {
         most_stuck = blocks;
     }
 
-    // Record that block i stops, or starts with a drop of friction, and with which neighbours it does so at one instant.
+    // Record that block i stops, or starts with a drop of friction, and with which neighbours it does so at one
+    // instant.
     void meet(const Springs &springs, int i, bool starts, const Clock &at) {
         if (!running || !springs.damped) return;
         for (int64_t k = springs.start[i]; k < springs.start[i + 1]; k++) {
