@@ -89,18 +89,19 @@ def detuned_motion(model: Model, start: ChainState, detuning: float, exponents: 
         return DetunedMotion(unknown, unknown, *exponent, unknown, math.nan, math.nan, settled.final)
     motion = sampled_motion(detuned, settled.final, WINDOW)
     frequency, error = motion.frequencies()
-    share, ratio = np.full(model.blocks, math.nan), complex(math.nan)
+    share, ratio = np.full(model.blocks, math.nan), np.complex128(math.nan)
     if np.isfinite(frequency[0]):
         modes = modes_of(motion)
         share, line = modes.line_shares(frequency[0]), modes.line(frequency[0]) @ modes.shape
-        ratio = complex(line[-1] / line[0])
+        ratio = line[-1] / line[0]
     return DetunedMotion(
         frequency,
         error,
         settled.lyapunov_exponent,
         settled.lyapunov_error,
         share,
-        abs(ratio),
+        # Python's own abs of a complex NaN may raise OverflowError, by an error that an earlier call left.
+        float(np.abs(ratio)),
         math.degrees(np.angle(ratio)) % 360.0,
         settled.final,
     )
