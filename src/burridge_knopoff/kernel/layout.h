@@ -25,8 +25,8 @@ struct Model {
     Law law;
     double v;
     bool symmetric;  // whether a block that is pulled below −θ_i slips backward
-    // A block that can creep stops where its speed has fallen below minus this: unless the driver pulls the block on, its
-    // speed tends to 0 and rounding decides the sign. 0 if no slip can creep.
+    // A block that can creep stops where its speed has fallen below minus this: unless the driver pulls the block on,
+    // its speed tends to 0 and rounding decides the sign. 0 if no slip can creep.
     double creep_speed;
     // Under quasi-static loading, speed below which a slip is slow: the friction is then linear in the speed.
     double rest_speed;
