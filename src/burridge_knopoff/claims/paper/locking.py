@@ -56,7 +56,7 @@ def branch_locked(
     *,
     a: Range = BELOW,
     detuning: Detuning = 0.3,
-    mode_deviation: ModeDeviation = 0.35,
+    mode_deviation: ModeDeviation = 0.38,
     loose_share: LooseShare = 0.9,
 ) -> Verdict:
     """The motion below a = 0.1, which depends on history, is an example of frequency locking, also without
@@ -71,9 +71,9 @@ def branch_locked(
     Lyapunov exponents of 0. Or it means locking as opposed to a normal mode, which also has one frequency: the end
     blocks do not have the amplitude ratio and phase difference of a mode. With r e^{iθ} their complex ratio and ρ
     that of the nearest mode, they move in the mode if |r e^{iθ}/ρ − 1| is at most `mode_deviation`. With 30 % more
-    mass ρ = −0.57: equal amplitudes deviate by 0.76 in antiphase, and more the nearer the end of locking is. With
-    10 % they deviate by 0.22, which does not decide. Nor does the energy: with 30 % more mass 95 % of it may be in
-    one mode at any ratio from 0.32 to 0.91.
+    mass ρ = −0.57: equal amplitudes deviate by 0.76 in antiphase, of which `mode_deviation` is half, and more the
+    nearer the end of locking is. With 10 % they deviate by 0.22, which does not decide. Nor does the energy: with
+    30 % more mass 95 % of it may be in one mode at any ratio from 0.32 to 0.91.
 
     If the end blocks of branch 1 are locked to the middle block, the rotation number is a ratio of whole numbers
     that is constant in a. The verdict reports where, but does not depend on it. Fractions of a are taken over the
