@@ -776,6 +776,8 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("solutions_agree", NOT_TESTABLE, both(CHAOS_OF_RUNS, alter("attractors", "kind", UNDETERMINED))),
     ("solutions_agree", NOT_TESTABLE, lambda world: world.update(solvers=world["solvers"].sel(a=[0.08]))),
     ("solutions_agree", HOLDS, lambda world: world.update(solvers=world["solvers"].sel(a=[0.02, 0.08]))),
+    # Two solvers of a law are enough.
+    ("solutions_agree", HOLDS, lambda world: world.update(solvers=world["solvers"].sel(solver=["series", "rk4"]))),
     ("solutions_agree", NOT_TESTABLE, alter("agreement", "kind", UNDETERMINED)),
     ("solutions_agree", NOT_TESTABLE, alter("solvers", "difference", np.nan)),
     # A failed run does not agree with any other.
