@@ -313,6 +313,18 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("minus_distance_vanishes", LOOSELY, alter("mean_distance", "settling_time", 4500.0)),
     ("history_decides", HOLDS, alter("attractors", "basin_count", 0, attractor=[1, 2])),
     ("history_decides", FAILS, both(alter("attractors", "branch", 0), reached(0))),
+    # An attractor that no state reaches does not count.
+    ("history_decides", FAILS, both(alter("attractors", "basin_count", 0, attractor=[1, 2]), reached(0))),
+    # Two attractors decide, however few states were sampled.
+    (
+        "history_decides",
+        HOLDS,
+        both(
+            alter("attractors", "basin_count", 10),
+            alter("attractors", "branch", -1, attractor=2),
+            reached(0, initial="minus"),
+        ),
+    ),
     # Several attractors of one kind have one character of motion; an undetermined kind does not count.
     ("history_decides", FAILS, alter("attractors", "kind", PERIODIC)),
     ("history_decides", FAILS, both(alter("attractors", "kind", UNDETERMINED, attractor=[1, 2]))),
@@ -784,6 +796,8 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("solutions_agree", NOT_TESTABLE, both(CHAOS_OF_RUNS, alter("attractors", "kind", UNDETERMINED))),
     ("solutions_agree", NOT_TESTABLE, lambda world: world.update(solvers=world["solvers"].sel(a=[0.08]))),
     ("solutions_agree", HOLDS, lambda world: world.update(solvers=world["solvers"].sel(a=[0.02, 0.08]))),
+    # Two solvers of a law are enough.
+    ("solutions_agree", HOLDS, lambda world: world.update(solvers=world["solvers"].sel(solver=["series", "rk4"]))),
     ("solutions_agree", NOT_TESTABLE, alter("agreement", "kind", UNDETERMINED)),
     ("solutions_agree", NOT_TESTABLE, alter("solvers", "difference", np.nan)),
     # A failed run does not agree with any other.

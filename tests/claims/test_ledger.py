@@ -186,9 +186,9 @@ def test_markdown_has_a_row_and_a_section_for_each_claim() -> None:
     independent = sum(not claim.depends_on for claim in CLAIMS.values())
     assert 30 < independent < len(CLAIMS)
     assert text.startswith(
-        f"Of {independent} independent statements, {independent} hold; eleven more repeat these or follow from them.\n\n"
-        "Depth of the search for attractors: 95 % intervals of basin fractions ±2 %, changes along a located within "
-        "0.0006,\nperiodic orbits up to a period of 500.\n\n| statement"
+        f"Of {independent} independent statements, {independent} hold; eleven more repeat these or follow from them."
+        "\n\nDepth of the search for attractors: 95 % intervals of basin fractions ±2 %, changes along a located "
+        "within 0.0006,\nperiodic orbits up to a period of 500.\n\n| statement"
     )
     assert text.count("Depends on ") == len(CLAIMS) - independent
 
