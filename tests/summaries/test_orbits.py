@@ -100,8 +100,8 @@ def test_the_transition_is_recomputed(dataset):
     values, covariance = fit(slice(None))
     shorter = [fit(ends)[0][1] - values[1] for ends in (slice(0, 4), slice(2, 6))]
     expected = np.sqrt(covariance[1, 1] + np.abs(shorter).max() ** 2 + (fit(slice(None), error)[0][1] - values[1]) ** 2)
-    assert part["amplitude_exponent"].item() == pytest.approx(values[1], abs=1e-9)
-    assert part["amplitude_exponent_error"].item() == pytest.approx(expected, rel=1e-2)
+    assert part["amplitude_exponent"].item() == pytest.approx(values[1], abs=1e-8)
+    assert part["amplitude_exponent_error"].item() == pytest.approx(expected, rel=0.05)
     coefficient = np.exp(values[0] - values[1] * np.log(1e-5))
     assert part["amplitude_coefficient"].item() == pytest.approx(coefficient, rel=1e-8)
     assert 0.0 < part["amplitude_coefficient_error"].item() < 1e-5
