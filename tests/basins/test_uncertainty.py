@@ -89,6 +89,20 @@ def test_exponent_of_counts():
     assert uncertainty_exponent(pair_counts(bent, 0.0, few)).kind == ExponentKind.UNKNOWN
 
 
+@pytest.mark.parametrize(("bend", "enters"), [(0.25, True), (0.0, False)])
+def test_the_error_includes_a_change_of_the_exponent(bend, enters):
+    """f = ε^0.5·exp(…) with a local exponent that tends to 0.5 − bend/2 and 0.5 + bend/2 at the ends."""
+    z = (X - X[FITTED_FROM]) / (X[-1] - X[FITTED_FROM])
+    fraction = np.exp((X[-1] - X[FITTED_FROM]) * ((0.5 - 0.5 * bend) * z + 0.5 * bend * z**2) - 1.0)
+    exponent = uncertainty_exponent(pair_counts(fraction, 0.05))
+    value, error = exponent.alpha
+    assert exponent.kind == ExponentKind.SINGLE
+    assert value == pytest.approx(0.5, abs=0.03)
+    assert (error > 0.08) == enters
+    if enters:
+        assert abs(value - (0.5 + 0.5 * bend)) < 1.2 * error
+
+
 @pytest.mark.parametrize(
     ("bend", "noise", "counts"),
     [(0.31, 0.0, True), (-0.31, 0.0, True), (0.29, 0.0, False), (0.4, 0.7, True), (0.4, 0.8, False), (0.4, 1.0, False)],

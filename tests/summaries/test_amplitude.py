@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.stats import linregress
 
 from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
@@ -39,12 +40,38 @@ def test_a_sweep_gives_nan_where_end_blocks_do_not_stick_together(families):
 
 
 def test_power_law_of_a_power_law():
-    x = np.array([1e-6, 3e-5, 2e-4, 1e-3])
+    x = np.array([1e-6, 5e-6, 3e-5, 8e-5, 2e-4, 1e-3])
     fit = fit_power_law(x, 0.3 * x**0.75)
     assert (fit.exponent, fit.coefficient) == pytest.approx((0.75, 0.3), abs=1e-9)
-    assert fit.error < 1e-9
-    noisy = fit_power_law(x, 0.3 * x**0.75 * np.array([1.01, 0.99, 1.01, 0.99]))
-    assert 1e-4 < noisy.error < 1e-2
+    assert max(fit.error, fit.coefficient_error) < 1e-9
+    noisy = fit_power_law(x, 0.3 * x**0.75 * np.array([1.01, 0.99, 1.01, 0.99, 1.01, 0.99]))
+    assert 1e-3 < noisy.error < 1e-1
     # The result has ten decimals, on which all machines agree.
-    numbers = noisy.exponent, noisy.error, noisy.coefficient
+    numbers = noisy.exponent, noisy.error, noisy.coefficient, noisy.coefficient_error
     assert numbers == tuple(round(value, 10) for value in numbers)
+
+
+def test_the_errors_include_the_next_orders():
+    """Offsets and terms as near a_c, ε^β exp(kε + mε²): a straight line in logarithms excludes β, by many errors."""
+    generator = np.random.default_rng(1)
+    offset = 21.0 * 1e-8 * 10 ** (np.arange(6) / 2.5)
+    misses, of_lines = [], []
+    for _ in range(300):
+        beta, k, m = generator.choice([0.25, 0.5, 1.0]), generator.normal(0.0, 1.0), generator.normal(0.0, 1e4)
+        amplitude = 0.2 * offset**beta * np.exp(k * offset + m * offset**2)
+        shifted = offset + generator.normal(0.0, 1e-13)
+        fit, line = fit_power_law(shifted, amplitude, 1e-13), linregress(np.log(shifted), np.log(amplitude))
+        misses.append(((fit.exponent - beta) / fit.error, (fit.coefficient - 0.2) / fit.coefficient_error))
+        of_lines.append((line.slope - beta) / line.stderr)
+        assert fit.error < 1e-5
+    covered = np.mean(np.abs(misses) < 1.0, axis=0)
+    assert (covered > 0.63).all()
+    assert np.median(np.abs(misses), axis=0) == pytest.approx(0.5, abs=0.3)
+    assert np.mean(np.abs(of_lines) > 2.0) > 0.8
+
+
+def test_an_error_of_the_origin_enters():
+    offset = 1e-6 * 10 ** (np.arange(6) / 2.5)
+    exact, shifted = fit_power_law(offset, offset**0.5), fit_power_law(offset + 1e-9, offset**0.5, 1e-9)
+    assert exact.error < 1e-9
+    assert 0.3 * shifted.error < abs(shifted.exponent - 0.5) < shifted.error

@@ -27,6 +27,9 @@ _FEWEST_SEPARATIONS = 4
 _CHANGE = 0.3
 _STANDARD_ERRORS = 3.0
 
+# A change is by chance smaller than this many standard errors; what is larger enters into the error of α.
+_LIKELY_ERRORS = 2.0
+
 
 class ExponentKind(IntEnum):
     """Whether a boundary has a single exponent, an exponent that varies with ε, or too few different pairs to decide.
@@ -41,11 +44,12 @@ class ExponentKind(IntEnum):
 
 @dataclass(frozen=True)
 class Exponent:
-    """f and its exponents; all but the kind as (value, standard error), from a jackknife over the batches of pairs.
+    """f and its exponents; all but the kind as (value, error), from a jackknife over the batches of pairs.
 
     fraction : f, shape (separations,)
     local : slope of log f against log ε between neighbouring separations, shape (separations − 1,)
-    alpha : slope of a straight line through the fitted separations; NaN unless the kind is SINGLE
+    alpha : slope of a straight line through the fitted separations; NaN unless the kind is SINGLE. Its error includes
+        half the change, as far as two standard errors of it do not explain it
     change : of that slope from the largest to the smallest fitted separation, from a parabola
     """
 
@@ -82,6 +86,9 @@ def uncertainty_exponent(pairs: PairCounts) -> Exponent:
     (change,), (change_error,) = _jackknife(span * parabola, span * parabolas)
     if abs(change) > max(_CHANGE, _STANDARD_ERRORS * change_error):
         return Exponent(ExponentKind.VARYING, *exponents, nothing, (change, change_error))
+    # The slope at either end of the fitted separations is alpha ± change/2.
+    bend = 0.5 * np.sqrt(max(change**2 - (_LIKELY_ERRORS * change_error) ** 2, 0.0))
+    alpha_error = round(float(np.hypot(alpha_error, bend)), 10)
     return Exponent(ExponentKind.SINGLE, *exponents, (alpha, alpha_error), (change, change_error))
 
 

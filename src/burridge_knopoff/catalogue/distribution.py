@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
+from burridge_knopoff.catalogue.batches import batch_index, batch_sums, ratio_error
 from burridge_knopoff.messages import refusal
 from burridge_knopoff.values import real_number
 
@@ -59,28 +61,52 @@ def covered_blocks(first_block: np.ndarray, last_block: np.ndarray, blocks: int)
     return [(first - 1 + np.arange(count)) % blocks + 1 for first, count in zip(first_block, length, strict=True)]
 
 
-def recurrence(
-    time: np.ndarray, members: Sequence[np.ndarray], blocks: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return for each block the number of events, and the mean and standard deviation of the intervals between them.
+@dataclass(frozen=True, eq=False)
+class Recurrence:
+    """Events that contain each block, and the intervals between them; arrays of shape (blocks,).
+
+    count : number of events
+    mean, spread : mean and standard deviation of the intervals, NaN for blocks with too few events
+    mean_error, spread_error : their standard errors, NaN if nearly all intervals end in a few batches
+    """
+
+    count: np.ndarray
+    mean: np.ndarray
+    mean_error: np.ndarray
+    spread: np.ndarray
+    spread_error: np.ndarray
+
+
+def recurrence(time: np.ndarray, members: Sequence[np.ndarray], blocks: int, begin: float, end: float) -> Recurrence:
+    """Return how often the blocks slip.
 
     time : times of the events in ascending order, shape (events,)
     members : the blocks (1 …) of each event
-
-    Returns three arrays of shape (blocks,), with NaN for blocks with too few events. Mean and variance are updated with
-    each interval: B. P. Welford, Technometrics 4 (1962) 419.
+    begin, end : of the catalogue
     """
-    count, before = np.zeros(blocks, dtype=int), np.full(blocks, np.nan)
-    mean, squares = np.zeros(blocks), np.zeros(blocks)
-    for at, several in zip(time.tolist(), members, strict=True):
-        part = several - 1
-        again = part[count[part] > 0]
-        gap = at - before[again]
-        deviation = gap - mean[again]
-        mean[again] += deviation / count[again]
-        squares[again] += deviation * (gap - mean[again])
-        count[part] += 1
-        before[part] = at
-    gaps = np.maximum(count - 1, 1)
-    spread = np.where(count > 2, np.sqrt(squares / gaps), np.nan)
-    return count, np.where(count > 1, mean, np.nan), spread
+    block = np.concatenate([np.zeros(0, dtype=int), *members]) - 1
+    event = np.repeat(np.arange(len(time)), [len(part) for part in members])
+    order = np.argsort(block, kind="stable")
+    block, event = block[order], event[order]
+    again = np.flatnonzero(np.diff(block) == 0) + 1
+    row, gap = block[again], time[event[again]] - time[event[again - 1]]
+    batch = batch_index(time, begin, end)[event[again]]
+
+    def sums(values: np.ndarray | None) -> np.ndarray:
+        return batch_sums(batch, values, row, blocks)
+
+    number = sums(None)
+    gaps = number.sum(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        mean = sums(gap).sum(axis=1) / gaps
+        # The intervals may hardly differ: a second pass removes the rounding of the first.
+        mean += sums(gap - mean[row]).sum(axis=1) / gaps
+        deviation = gap - mean[row]
+        spread = np.where(gaps > 1, np.sqrt(sums(deviation**2).sum(axis=1) / gaps), np.nan)
+        return Recurrence(
+            np.bincount(block, minlength=blocks),
+            mean,
+            ratio_error(sums(deviation), number),
+            spread,
+            ratio_error(sums(deviation**2), number) / (2.0 * spread),
+        )

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from burridge_knopoff.catalogue.batches import batch_index, batch_sums, ratio_error
 from burridge_knopoff.messages import refusal
 from burridge_knopoff.values import real_array, real_number
 
@@ -20,6 +21,8 @@ BOOTSTRAP_SIZE = 999
 MAX_BOOTSTRAP_EVENTS = 300
 #: Smaller values of p are not distinguished.
 SMALLEST_P = 0.005
+# The slopes in the two halves of a range differ if their difference is above this many standard errors.
+STANDARD_ERRORS = 2.0
 # If the range is wider than this many times the distance of all events from one end, the other end counts as infinite.
 INFINITE_RATIO = 1000.0
 # Magnitudes and ends above SCALING_LIMIT are multiplied by SCALING, since their sums and differences would overflow.
@@ -30,10 +33,13 @@ SCALING_LIMIT, SCALING = 1e300, 2.0**-64
 class Slope:
     """The slope b: between two magnitudes the rate of events falls as exp(−b·magnitude), with the moment as M^(−1−b).
 
-    b : the slope; error : its standard error, from the Fisher information
+    b : the slope; error : its error, √(scatter² + spread²)
     low, high : range of the fit; count : number of events in this range
     p_value : probability that a catalogue of this distribution differs at least as much from its own fit
         (Kolmogorov-Smirnov distance), at least 1/1000; `format_p_value` formats it
+    scatter : standard error of b in this range: the scatter of independent catalogues
+    spread : how far the slope in the lower or the upper half of the range differs from b; 0 if the two slopes differ by
+        less than two standard errors, as they do if the rate falls exponentially, or if a half has too few events
 
     >>> from burridge_knopoff import fit_slope
     >>> fit = fit_slope([0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 0.9, 1.2, 1.7, 3.0], 0.0)
@@ -47,12 +53,18 @@ class Slope:
     high: float
     count: int
     p_value: float
+    scatter: float
+    spread: float
 
 
-def fit_slope(magnitude: ArrayLike, low: float, high: float = math.inf) -> Slope:
+def fit_slope(magnitude: ArrayLike, low: float, high: float = math.inf, *, time: ArrayLike | None = None) -> Slope:
     """Fit an exponential distribution, truncated at both ends, to the magnitudes in a range.
 
     magnitude : of the events, shape (events,); low, high : ends of the range
+    time : of the events, in any order. The scatter of b and p then allow for events that depend on each other, as
+        those of a chain do, by the scatter of parts of the catalogue (`catalogue.batches`); the scatter is NaN if
+        nearly all events in the range lie in a few of these parts. Without times events count as independent, and the
+        scatter follows from the Fisher information
 
     p comes from a parametric bootstrap: random catalogues of the fitted distribution are each compared with their own
     fit. Since the slope is fitted to the same events, the tables of the Kolmogorov-Smirnov distribution would be far
@@ -87,7 +99,7 @@ def fit_slope(magnitude: ArrayLike, low: float, high: float = math.inf) -> Slope
     if not real_number(high) >= real_number(low):
         raise refusal("high", high, f"a number of at least low ({real_number(low):g})")
     low, high = float(low), float(high)
-    inside = np.sort(magnitude[(magnitude >= low) & (magnitude <= high)])
+    inside, batch = _events_inside(magnitude, time, low, high)
     where = f"between {low:g} and {high:g}"
     if len(inside) < MIN_EVENTS:
         raise ValueError(f"magnitude: got {len(inside)} events {where}, expected {MIN_EVENTS} or more")
@@ -95,16 +107,102 @@ def fit_slope(magnitude: ArrayLike, low: float, high: float = math.inf) -> Slope
         raise ValueError(f"magnitude: got {inside[-1]:g} {where}, expected finite magnitudes")
     if inside[0] == inside[-1]:
         raise ValueError(f"magnitude: got only {inside[0]:g} {where}, expected a spread")
+    fit = _fit(inside, batch, low, high)
+    if not (math.isfinite(fit.b) and math.isfinite(fit.error)):
+        raise ValueError(f"magnitude: got differences up to {inside[-1] - inside[0]:g} {where}, expected larger ones")
+    difference = float(_largest_difference(fit.share[None], fit.decay)[0])
+    p_value = _p_value(difference, float(fit.decay[0]), len(inside), _independent_events(fit))
+    spread = _spread(fit, inside, batch, low, high)
+    return Slope(fit.b, math.hypot(fit.scatter, spread), low, high, len(inside), p_value, fit.scatter, spread)
+
+
+def _events_inside(
+    magnitude: np.ndarray, time: ArrayLike | None, low: float, high: float
+) -> tuple[np.ndarray, np.ndarray | None]:
+    """Return the magnitudes in a range, in ascending order, and the batch of each event; None without times."""
+    chosen = (magnitude >= low) & (magnitude <= high)
+    if time is None:
+        return np.sort(magnitude[chosen]), None
+    time = real_array(time, "time")
+    if time.shape != magnitude.shape:
+        raise refusal("time", time.shape, f"shape {magnitude.shape}, that of the magnitudes")
+    if not np.isfinite(time).all():
+        raise refusal("time", float(time[~np.isfinite(time)][0]), "finite numbers")
+    inside = magnitude[chosen]
+    order = np.argsort(inside, kind="stable")
+    return inside[order], batch_index(time, time.min(), time.max())[chosen][order] if len(order) else None
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """A slope b with its errors: from the Fisher information, and of independent catalogues.
+
+    share : distances of the events from one end of the range, over its width, in ascending order
+    decay : for which exp(−decay·share) fits them, shape (1,)
+    rises : whether that end is the upper one
+    batch : of these events, None without times
+    """
+
+    b: float
+    error: float
+    scatter: float
+    share: np.ndarray
+    decay: np.ndarray
+    rises: bool
+    batch: np.ndarray | None
+
+
+def _fit(inside: np.ndarray, batch: np.ndarray | None, low: float, high: float) -> _Fit:
+    """Fit magnitudes of a range, in ascending order; b or its error may be infinite.
+
+    A. C. Davison, Statistical Models (2003), section 4.6: a slope reacts to the sum of the shares of its events by the
+    inverse of their variance, whatever their distribution and dependence.
+    """
     distance, width, factor, rises = _distances(inside, low, high)
     # Measured from the end with more events, the slope is not negative.
     share = distance / width
     decay = _decay(share.mean(keepdims=True))
     b = factor * (float(decay[0]) / width)
-    error = factor / (width * math.sqrt(len(share) * float(_variance(decay)[0])))
-    if not (math.isfinite(b) and math.isfinite(error)):
-        raise ValueError(f"magnitude: got differences up to {inside[-1] - inside[0]:g} {where}, expected larger ones")
-    p_value = _p_value(float(_largest_difference(share[None], decay)[0]), float(decay[0]), len(share))
-    return Slope(-b if rises else b, error, low, high, len(share), p_value)
+    variance = float(_variance(decay)[0])
+    error = scatter = factor / (width * math.sqrt(len(share) * variance))
+    if batch is not None:
+        batch = batch[::-1] if rises else batch
+        scatter *= float(ratio_error(batch_sums(batch, share), batch_sums(batch))[0]) / math.sqrt(variance / len(share))
+    return _Fit(-b if rises else b, error, scatter, share, decay, rises, batch)
+
+
+def _independent_events(fit: _Fit) -> float:
+    """Return the number of independent events whose distribution differs as much from its fit as that of the events.
+
+    It follows from the error of the share of events below the largest difference, apart from what the slope explains.
+    """
+    count = len(fit.share)
+    if fit.batch is None:
+        return count
+    at = int(np.abs((np.arange(count) + 0.5) / count - _distribution(fit.share, fit.decay)).argmax())
+    below, share = (values - values.mean() for values in (fit.share <= fit.share[at], fit.share))
+    below -= share * (np.sum(below * share) / np.sum(share**2))
+    error = float(ratio_error(batch_sums(fit.batch, below), batch_sums(fit.batch))[0])
+    square = float(below.var(ddof=1)) / count
+    return count * square / error**2 if error**2 > square else count
+
+
+def _spread(fit: _Fit, inside: np.ndarray, batch: np.ndarray | None, low: float, high: float) -> float:
+    """Return how far the slopes of the two halves of a range differ from that of the whole; 0 if by chance."""
+    before = int(np.searchsorted(inside, 0.5 * float(inside[0]) + 0.5 * float(inside[-1])))
+    if min(before, len(inside) - before) < MIN_EVENTS:
+        return 0.0
+    # Between two events, so that rounded magnitudes keep half a bin on either side.
+    middle = 0.5 * float(inside[before - 1]) + 0.5 * float(inside[before])
+    halves = []
+    for half, start, end in ((slice(before), low, middle), (slice(before, None), middle, high)):
+        if inside[half][0] == inside[half][-1]:
+            return 0.0
+        halves.append(_fit(inside[half], None if batch is None else batch[half], start, end))
+    lower, upper = halves
+    if not abs(upper.b - lower.b) > STANDARD_ERRORS * math.hypot(lower.scatter, upper.scatter):
+        return 0.0
+    return max(abs(half.b - fit.b) for half in halves)
 
 
 def _distances(inside: np.ndarray, low: float, high: float) -> tuple[np.ndarray, float, float, bool]:
@@ -142,8 +240,11 @@ def format_p_value(p: float) -> str:
     return f"p < {SMALLEST_P:g}" if p < SMALLEST_P else f"p = {p:.2f}"
 
 
-def _p_value(difference: float, decay: float, count: int) -> float:
-    """Return the probability of at least this Kolmogorov-Smirnov distance in catalogues of the fitted distribution."""
+def _p_value(difference: float, decay: float, count: int, independent: float) -> float:
+    """Return the probability of at least this Kolmogorov-Smirnov distance in catalogues of the fitted distribution.
+
+    count : number of events; independent : number of independent events that scatter as much
+    """
     size = min(count, MAX_BOOTSTRAP_EVENTS)
     # Cumulative sums of exponential numbers, divided by their total, are uniform numbers in ascending order.
     sums = np.random.default_rng(count).standard_exponential((BOOTSTRAP_SIZE, size + 1)).cumsum(axis=1)
@@ -153,7 +254,7 @@ def _p_value(difference: float, decay: float, count: int) -> float:
     share = np.log1p(uniform * math.expm1(-decay)) / -decay
     drawn = _largest_difference(share, _decay(share.mean(axis=1)))
     # Dependence on the number of events: M. A. Stephens, J. Am. Stat. Assoc. 69 (1974) 730.
-    difference *= (math.sqrt(count) + 0.26) / (math.sqrt(size) + 0.26)
+    difference *= (math.sqrt(independent) + 0.26) / (math.sqrt(size) + 0.26)
     return (1 + int((drawn >= difference).sum())) / (BOOTSTRAP_SIZE + 1)
 
 
@@ -164,10 +265,15 @@ def _largest_difference(share: np.ndarray, decay: np.ndarray) -> np.ndarray:
 
     Returns shape (catalogues,).
     """
-    decay = np.where(np.abs(decay) < 1e-9, 1e-9, decay)[:, None]
-    expected = np.expm1(-decay * share) / np.expm1(-decay)
+    expected = _distribution(share, decay[:, None])
     rank = np.arange(share.shape[1] + 1) / share.shape[1]
     return np.maximum((rank[1:] - expected).max(axis=1), (expected - rank[:-1]).max(axis=1))
+
+
+def _distribution(share: np.ndarray, decay: np.ndarray) -> np.ndarray:
+    """Return the fraction of exp(−decay·x) on [0, 1] that lies below x = share."""
+    decay = np.where(np.abs(decay) < 1e-9, 1e-9, decay)
+    return np.expm1(-decay * share) / np.expm1(-decay)
 
 
 def _decay(mean: np.ndarray) -> np.ndarray:

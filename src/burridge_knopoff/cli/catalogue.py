@@ -61,16 +61,21 @@ def run(options: argparse.Namespace) -> int:
     until = f"to {settings.end:g}" if status == Status.COMPLETED else "until the run ended"
     print(f"events      {count} from tau = {settings.transient:g} {until}")
     if count and status == Status.COMPLETED:
-        print(f"rate        {summary['event_rate'].item():.6g} per unit of tau")
+        rate, error = (summary[name].item() for name in ("event_rate", "event_rate_error"))
+        print(f"rate        {to_ascii(with_error(rate, error))} per unit of tau")
     if count:
         magnitude, blocks = events["magnitude"].values, events["blocks"].values
         print(f"magnitude   {magnitude.min():.4g} to {magnitude.max():.4g}; {blocks.min()} to {blocks.max()} blocks")
     if count and status == Status.COMPLETED:
-        names = ("slope", "slope_error", "slope_low", "slope_high", "slope_count", "slope_p_value")
-        slope, error, low, high, fitted, p_value = (summary[name].item() for name in names)
+        parts = ("error", "scatter", "spread", "low", "high", "count", "p_value")
+        slope, error, scatter, spread, low, high, fitted, p_value = (
+            summary[name].item() for name in ("slope", *(f"slope_{part}" for part in parts))
+        )
         where = f"{fitted} events from {low:g} to {high:g}"
         fit = f"{to_ascii(with_error(slope, error))}, {format_p_value(p_value)}, of" if slope == slope else "none:"
         print(f"slope       {fit} {where}")
+        if spread > 0.0:
+            print(f"            it changes within this range; from run to run it scatters by {scatter:.2g}")
     if reason := digest(events):
         print(reason)
     if options.out:

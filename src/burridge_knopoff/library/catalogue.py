@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from burridge_knopoff.catalogue import events
+from burridge_knopoff.catalogue.batches import batch_index, batch_sums, rate_error, ratio_error
 from burridge_knopoff.catalogue.distribution import fit_range
 from burridge_knopoff.catalogue.events import SlipEvents
 from burridge_knopoff.catalogue.slope import Slope, fit_slope
+from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.running.status import early_end
+from burridge_knopoff.running.status import Status, early_end
+from burridge_knopoff.values import real_array
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -28,6 +35,9 @@ class Catalogue(SlipEvents):
     >>> rough = {"random": "uniform", "low": -1.0, "high": -0.9, "seed": 1}
     >>> events = record_events(model, model.begin(InitialState("rough", rough, 0.0), "tested"), 500.0, begin=100.0)
     >>> events.slope().count > 10
+    True
+    >>> rate, error = events.rate(events.blocks > 1)
+    >>> bool(0.0 < error < rate)
     True
     >>> events.to_dataset().magnitude.dims
     ('event',)
@@ -46,6 +56,46 @@ class Catalogue(SlipEvents):
             f"{early_end(self.status, self.final.time) or self.status.name.lower()}>"
         )
 
+    def rate(self, chosen: ArrayLike | None = None) -> tuple[float, float]:
+        """Return the number of events per unit of τ and its standard error, by batch means (`catalogue.batches`).
+
+        chosen : mask of the events that count, shape (events,); by default all count
+
+        Both are NaN if the run did not complete. Raises ValueError for a mask of another shape.
+        """
+        mask = np.ones(len(self.time), dtype=bool) if chosen is None else self._column(chosen, "chosen").astype(bool)
+        length = self.end_time - self.begin_time if self.status == Status.COMPLETED else math.nan
+        error = rate_error(batch_sums(self._batch[mask])[0], length)
+        return float(mask.sum() / length), float(error)
+
+    def mean(self, values: ArrayLike, weights: ArrayLike | None = None) -> tuple[float, float]:
+        """Return the mean of a value over the events and its standard error, by batch means (`catalogue.batches`).
+
+        values : of the events, shape (events,); the mean of a mask is the share of the events that it chooses
+        weights : of the events, such as their moments, or a mask of those that count; by default all are 1
+
+        The error is NaN if nearly all weight lies in a few batches. Raises ValueError for arrays of another shape.
+        """
+        value = self._column(values, "values")
+        weight = np.ones(len(value)) if weights is None else self._column(weights, "weights")
+        counts = weight != 0.0
+        batch, weight, total = self._batch[counts], weight[counts], (weight * value)[counts]
+        if not len(batch):
+            return math.nan, math.nan
+        error = ratio_error(batch_sums(batch, total), batch_sums(batch, weight))
+        return float(total.sum() / weight.sum()), float(error[0])
+
+    @property
+    def _batch(self) -> np.ndarray:
+        return batch_index(self.time, self.begin_time, self.end_time)
+
+    def _column(self, values: ArrayLike, name: str) -> np.ndarray:
+        is_mask = np.asanyarray(values).dtype == bool
+        column = real_array(np.asanyarray(values, dtype=int) if is_mask else values, name)
+        if column.shape != self.time.shape:
+            raise refusal(name, column.shape, f"shape {self.time.shape}, a value for each event")
+        return column
+
     def slope(self, low: float | None = None, high: float | None = None) -> Slope:
         """Return the slope of the magnitudes from `low` to `high`; see `fit_slope`.
 
@@ -55,7 +105,8 @@ class Catalogue(SlipEvents):
         """
         if ended := early_end(self.status, self.final.time):
             raise ValueError(f"slope: expected a complete catalogue: {ended}")
-        return fit_slope(self.magnitude, *fit_range(self.magnitude, self.moment, self.blocks, low, high))
+        ends = fit_range(self.magnitude, self.moment, self.blocks, low, high)
+        return fit_slope(self.magnitude, *ends, time=self.time)
 
     def plot(self) -> Figure:
         """Return a figure of the slips in space and time, their recurrence, rates, extents and intervals."""

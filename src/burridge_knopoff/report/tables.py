@@ -59,7 +59,7 @@ def transition_table(orbits: xarray.Dataset) -> dict[str, Any]:
             row("a at which block 2 begins to stick", "grazing_a"),
             row("a at which a mirror-symmetric multiplier reaches −1", "symmetric_period_doubling_a"),
             row("exponent of |x_1 − x_3| against a − a_c", "amplitude_exponent", "amplitude_exponent_error"),
-            row("coefficient of this power law", "amplitude_coefficient"),
+            row("coefficient of this power law", "amplitude_coefficient", "amplitude_coefficient_error"),
             # Of the order of rounding errors if there is no hysteresis.
             row("largest difference of |x_1 − x_3| between rising and falling a", "hysteresis", digits=1),
         ],

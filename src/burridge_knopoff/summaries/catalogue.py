@@ -1,6 +1,7 @@
 """Statistics of slip events over (law, a): rates, their slope, extents, intervals and recurrence.
 
 Each value of a has its own run, whose catalogue file has all events. Rates are NaN for runs that did not complete.
+Standard errors are those of batch means: see `catalogue.batches`.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import Any
 import numpy as np
 import xarray
 
+from burridge_knopoff.catalogue.batches import batch_index, batch_sums, rate_error, ratio_error
 from burridge_knopoff.catalogue.distribution import EDGES, WIDTH, covered_blocks, fit_range, recurrence
 from burridge_knopoff.catalogue.slip_events import NO_EVENT
 from burridge_knopoff.catalogue.slope import fit_slope
@@ -37,9 +39,17 @@ VARIABLES = {
     "status": _V(_RUN, "i1", "how the run ended", STATUS_FLAG),
     "event_count": _V(_RUN, "i8", "number of events in the catalogue"),
     "event_rate": _V(_RUN, "f8", "events per unit of time tau"),
+    "event_rate_error": _V(_RUN, "f8", "standard error of this rate: from batch means"),
     "largest_magnitude": _V(_RUN, "f8", "largest magnitude"),
     "slope": _V(_RUN, "f8", "slope b: the rate decreases as exp(-b magnitude) in the range of the fit"),
-    "slope_error": _V(_RUN, "f8", "standard error of the slope"),
+    "slope_error": _V(_RUN, "f8", "error of the slope: root of the sum of the squares of scatter and spread"),
+    "slope_scatter": _V(_RUN, "f8", "standard error of the slope in this range: from batch means"),
+    "slope_spread": _V(
+        _RUN,
+        "f8",
+        "spread of the slope: its largest difference from the slopes in the lower and the upper half of the range",
+        {"comment": "0 if these differ by less than two standard errors, or if a half has too few events"},
+    ),
     "slope_low": _V(_RUN, "f8", "smallest magnitude in the fit"),
     "slope_high": _V(_RUN, "f8", "largest magnitude in the fit"),
     "slope_count": _V(_RUN, "i8", "number of events in the fit"),
@@ -47,17 +57,22 @@ VARIABLES = {
         _RUN,
         "f8",
         "p value: probability that a catalogue drawn from the fit deviates from its own fit by at least as much",
-        {"comment": "Kolmogorov-Smirnov distance, parametric bootstrap"},
+        {"comment": "Kolmogorov-Smirnov distance, parametric bootstrap; allows for correlated events"},
     ),
     "magnitude_count": _V(_MAGNITUDE, "i8", "number of events per bin of magnitude"),
     "magnitude_rate": _V(_MAGNITUDE, "f8", "rate per magnitude: events per unit of time tau and of magnitude"),
+    "magnitude_rate_error": _V(_MAGNITUDE, "f8", "standard error of this rate: from batch means"),
     "mean_extent": _V(
         _MAGNITUDE, "f8", "mean extent: mean number of slipping blocks of the events in a bin of magnitude"
     ),
+    "mean_extent_error": _V(_MAGNITUDE, "f8", "standard error of the mean extent: from batch means"),
     "interval_count": _V(_INTERVAL, "i8", "number of events per bin of interval"),
+    "interval_count_error": _V(_INTERVAL, "f8", "standard error of this number: from batch means"),
     "block_event_count": _V(_BLOCK, "i8", "number of events that contain a block", {"comment": "-1 unknown"}),
     "recurrence": _V(_BLOCK, "f8", "recurrence time: mean time tau between events that contain a block"),
-    "recurrence_spread": _V(_BLOCK, "f8", "standard deviation of this time"),
+    "recurrence_error": _V(_BLOCK, "f8", "standard error of the recurrence time: from batch means"),
+    "recurrence_spread": _V(_BLOCK, "f8", "standard deviation of the time between these events"),
+    "recurrence_spread_error": _V(_BLOCK, "f8", "standard error of this standard deviation: from batch means"),
     "shown_time": _V(
         _SHOWN, "f8", "time tau of a shown event: of one of the last events of the run, NaN if there are fewer"
     ),
@@ -135,38 +150,51 @@ def _nonzero_range(counts: xarray.DataArray, name: str) -> slice:
 
 def _run_statistics(catalogue: xarray.Dataset, low: float | None, high: float | None) -> dict[str, Any]:
     """Return the values of all variables for one catalogue."""
-    length = catalogue.attrs["end_time"] - catalogue.attrs["begin_time"]
-    if catalogue["status"].item() != Status.COMPLETED:
-        length = np.nan
+    begin, end = (catalogue.attrs[f"{name}_time"] for name in ("begin", "end"))
+    completed = catalogue["status"].item() == Status.COMPLETED
+    length = end - begin if completed else np.nan
     names = ("time", "magnitude", "moment", "blocks", "interval")
     time, magnitude, moment, extent, interval = (catalogue[name].values for name in names)
-    count, covered = (np.histogram(magnitude, EDGES, weights=weights)[0] for weights in (None, extent))
+    batch = batch_index(time, begin, end)
     with np.errstate(divide="ignore", invalid="ignore"):
-        mean_extent = covered / count
-        among, _ = np.histogram(np.log(interval), EDGES)
+        counts, covered = (_binned(batch, magnitude, values) for values in (None, extent))
+        mean_extent = covered.sum(axis=1) / counts.sum(axis=1)
+        among = _binned(batch, np.log(interval))
     number = catalogue.attrs["blocks"]
     members = _members(catalogue)
-    if members is None:
-        containing, mean, spread = np.full(number, -1), *np.full((2, number), np.nan)
-    else:
-        containing, mean, spread = recurrence(time, members, number)
+    known = None if members is None else recurrence(time, members, number, begin, end)
+    unknown = np.full(number, np.nan)
     return {
         "status": catalogue["status"].item(),
         "event_count": len(time),
         "event_rate": len(time) / length,
+        "event_rate_error": rate_error(batch_sums(batch)[0], length),
         "largest_magnitude": magnitude.max() if len(time) else np.nan,
-        **_slope(magnitude, fit_range(magnitude, moment, extent, low, high), bool(np.isfinite(length))),
-        "magnitude_count": count,
-        "magnitude_rate": count / (length * WIDTH),
+        **_slope(time, magnitude, fit_range(magnitude, moment, extent, low, high), completed),
+        "magnitude_count": counts.sum(axis=1),
+        "magnitude_rate": counts.sum(axis=1) / (length * WIDTH),
+        "magnitude_rate_error": rate_error(counts, length) / WIDTH,
         "mean_extent": mean_extent,
-        "interval_count": among,
-        "block_event_count": containing,
-        "recurrence": mean,
-        "recurrence_spread": spread,
+        "mean_extent_error": ratio_error(covered, counts),
+        "interval_count": among.sum(axis=1),
+        "interval_count_error": rate_error(among, length) * length,
+        "block_event_count": known.count if known else np.full(number, -1),
+        "recurrence": known.mean if known else unknown,
+        "recurrence_error": known.mean_error if known else unknown,
+        "recurrence_spread": known.spread if known else unknown,
+        "recurrence_spread_error": known.spread_error if known else unknown,
         "shown_time": _pad(time[-LAST_EVENTS:], np.nan, LAST_EVENTS),
         "shown_magnitude": _pad(magnitude[-LAST_EVENTS:], np.nan, LAST_EVENTS),
         **_bars([] if members is None else members[-LAST_EVENTS:]),
     }
+
+
+def _binned(batch: np.ndarray, values: np.ndarray, weights: np.ndarray | None = None) -> np.ndarray:
+    """Return the events, or the sums of weights, in each bin of values and each batch, shape (bins, batches)."""
+    bins = np.searchsorted(EDGES, values, side="right") - 1
+    inside = (bins >= 0) & (bins < len(EDGES) - 1)
+    chosen = None if weights is None else weights[inside]
+    return batch_sums(batch[inside], chosen, bins[inside], len(EDGES) - 1)
 
 
 def _members(catalogue: xarray.Dataset) -> Sequence[np.ndarray] | None:
@@ -193,15 +221,17 @@ def _pad(values: np.ndarray, none: float, length: int) -> np.ndarray:
     return np.pad(values, (0, length - len(values)), constant_values=none)
 
 
-def _slope(magnitude: np.ndarray, fitted: tuple[float, float], completed: bool) -> Mapping[str, float]:
+def _slope(
+    time: np.ndarray, magnitude: np.ndarray, fitted: tuple[float, float], completed: bool
+) -> Mapping[str, float]:
     """Return the fit of a slope in a range, NaN if there is none."""
     low, high = fitted
-    fit = {"low": low, "high": high, "b": np.nan, "error": np.nan, "p_value": np.nan, "count": 0}
+    names = ("low", "high", "count", "error", "scatter", "spread", "p_value")
+    fit = dict.fromkeys(("b", *names), np.nan) | {"low": low, "high": high, "count": 0}
     # The fit fails if there are too few events, or if all have the same magnitude.
     with suppress(ValueError):
-        fit |= vars(fit_slope(magnitude, low, high)) if completed else {}
-    names = {"slope": "b", **{f"slope_{name}": name for name in ("error", "low", "high", "count", "p_value")}}
-    return {name: fit[key] for name, key in names.items()}
+        fit |= vars(fit_slope(magnitude, low, high, time=time)) if completed else {}
+    return {"slope": fit["b"]} | {f"slope_{name}": fit[name] for name in names}
 
 
 def digest(data: xarray.Dataset) -> str:

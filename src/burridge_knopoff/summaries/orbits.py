@@ -79,8 +79,14 @@ VARIABLES = {
     "amplitude_exponent": Variable(
         ("law",), "f8", "exponent of the amplitude: of a power law fitted to |x_1 - x_3| over a - a_c"
     ),
-    "amplitude_exponent_error": Variable(("law",), "f8", "standard error of the exponent"),
+    "amplitude_exponent_error": Variable(
+        ("law",),
+        "f8",
+        "error of the exponent: standard error, change with the range of a, and error of a_c",
+        {"comment": "the fit has the next order of the expansion in a - a_c"},
+    ),
     "amplitude_coefficient": Variable(("law",), "f8", "coefficient of that power law"),
+    "amplitude_coefficient_error": Variable(("law",), "f8", "error of the coefficient: as that of the exponent"),
     "sweep_asymmetry": Variable(
         ("law", "direction", "sweep_offset"), "f8", "|x_1 - x_3| in a sweep: in the runs of a sweep of a through a_c"
     ),
@@ -266,10 +272,11 @@ def _fill_branch(values: dict[str, Any], i: int, orbits: KnownOrbits, critical: 
     if (offset > 0.0).all() or (offset < 0.0).all():
         unstable = transverse_multiplier(orbits, critical + float(offset[-1])) > 1.0
         values["bifurcation_side"][i] = BifurcationSide.SUPERCRITICAL if unstable else BifurcationSide.SUBCRITICAL
-        fit = fit_power_law(np.abs(offset), asymmetry[small])
+        fit = fit_power_law(np.abs(offset), asymmetry[small], values["critical_a_error"][i])
         values["amplitude_exponent"][i] = fit.exponent
         values["amplitude_exponent_error"][i] = fit.error
         values["amplitude_coefficient"][i] = fit.coefficient
+        values["amplitude_coefficient_error"][i] = fit.coefficient_error
 
 
 def _compare(

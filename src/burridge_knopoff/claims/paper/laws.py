@@ -31,6 +31,7 @@ from burridge_knopoff.claims.verdict import (
 )
 from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.motion.kind import SYNCHRONOUS, MotionKind, is_same_result, merge_chaos
+from burridge_knopoff.study.formatting import with_error
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.judgement import excess, same_mean
 
@@ -300,17 +301,28 @@ def _judge_powers(
     least, largest = int(np.argmin(grid)), int(np.argmax(grid))
     readings, measured, texts = {}, [], []
     for name, product in zip(names, (grid * speed, speed), strict=True):
-        power = float(np.polyfit(np.log(grid), 2.0 * np.log(product), 1)[0])
+        power, error = _power(grid, product**2)
         ratio = float((product[least] / product[largest]) ** 2)
         readings[name] = judge_value(min(power, claimed), claimed, tolerance, loose)
-        measured.append(Measured(f"power of a with which the difference of the laws falls {name}", power))
+        measured.append(Measured(f"power of a with which the difference of the laws falls {name}", power, error))
         measured.append(Measured(f"remaining fraction of it {name}", ratio))
-        texts.append(f"to {100 * ratio:.2g} %, as a^{power:.2f}, {name} ({readings[name]})")
+        texts.append(f"to {100 * ratio:.2g} %, as a to the power {with_error(power, error)}, {name} ({readings[name]})")
     reason = (
         f"From a = {grid[largest]:g} down to {grid[least]:g} the difference of the laws on a slipping block falls "
         f"{'; '.join(texts)}. With the same slip speed it would fall as a^{claimed:g}."
     )
     return combine_readings(readings, reason, measured)
+
+
+def _power(grid: np.ndarray, values: np.ndarray) -> tuple[float, float | None]:
+    """Return the power of a in some values by least squares of logarithms, and its error.
+
+    The error is the change of the power if the next order is fitted as well, a factor exp(ka); None for fewer than four
+    values of a.
+    """
+    columns = np.stack([np.ones(len(grid)), np.log(grid), grid], axis=1)
+    power, limit = (float(np.linalg.lstsq(columns[:, :count], np.log(values))[0][1]) for count in (2, 3))
+    return power, abs(limit - power) if len(np.unique(grid)) > 3 else None
 
 
 def _fastest_slips(

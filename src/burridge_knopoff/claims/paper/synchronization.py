@@ -305,11 +305,12 @@ def minus_distance_vanishes(
     ]
     text = f"stays below {join_words(reached)}" if np.isfinite(settled) else f"does not stay below {level:g}"
     verdict = HOLDS if settled <= by else LOOSELY if settled <= loose * by else FAILS
-    rate, expected = _decay_rate(runs, level), _transverse_rate(evidence, law, at)
+    expected, period = _transverse_rate(evidence, law, at)
+    rate, error = _decay_rate(runs, level, 2.0 * period)
     decay = ""
     if np.isfinite(rate):
-        measured.append(Measured("rate at which J falls", rate))
-        decay = f" It falls as exp(−{rate:.3g} τ)."
+        measured.append(Measured("rate at which J falls", rate, error if np.isfinite(error) else None))
+        decay = f" It falls as exp(−κτ) with κ = {with_error(rate, error)}."
     if np.isfinite(expected):
         measured.append(Measured("rate by the transverse multiplier of the synchronized orbit", expected))
         decay += f" The transverse multiplier of the synchronized orbit gives a rate of {expected:.3g}."
@@ -317,20 +318,29 @@ def minus_distance_vanishes(
     return Verdict(verdict, reason, measured)
 
 
-def _decay_rate(runs: xarray.Dataset, least: float) -> float:
-    """Return the decay rate of J between the two lowest levels from `least` on; NaN if it reaches only one of them."""
+def _decay_rate(runs: xarray.Dataset, least: float, resolution: float) -> tuple[float, float]:
+    """Return the decay rate of J between the two lowest levels from `least` on, with its error.
+
+    resolution : uncertainty of the time between the levels, since J oscillates while it falls
+
+    Both are NaN if J reaches only one level.
+    """
     levels = runs["level"].values
     times = runs["settling_time"].values
     above = np.flatnonzero((levels >= least) & np.isfinite(times))
     first, last = above[np.argsort(-levels[above])][-2:] if len(above) > 1 else (0, 0)
     time = times[last] - times[first]
-    return float(np.log(levels[first] / levels[last]) / time) if time > 0.0 else np.nan
+    rate = float(np.log(levels[first] / levels[last]) / time) if time > 0.0 else np.nan
+    return rate, rate * resolution / float(time) if time > 0.0 else np.nan
 
 
-def _transverse_rate(evidence: Evidence, law: str, at: float) -> float:
-    """Return the rate at which the end blocks approach each other near synchrony; NaN if no orbit is known."""
+def _transverse_rate(evidence: Evidence, law: str, at: float) -> tuple[float, float]:
+    """Return the rate at which the end blocks approach each other near synchrony, and the period of the synchronized
+    orbit; NaN if no orbit is known.
+    """
     orbits = evidence.summaries.get("orbits")
     if orbits is None or at not in orbits["a"].values:
-        return np.nan
+        return np.nan, np.nan
     orbit = orbits.sel(law=law, a=at)
-    return float(-np.log(abs(orbit["transverse_multiplier"].item())) / orbit["period"].item())
+    period = orbit["period"].item()
+    return float(-np.log(abs(orbit["transverse_multiplier"].item())) / period), period
