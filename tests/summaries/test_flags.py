@@ -32,7 +32,7 @@ EXPECTED = {
     "agreement": {**AGREEMENT, "settled": VERDICT},
     "attractors": {**SLOT, "sliding_attracts": YES_NO},
     "refined": {**SLOT, "in_grid": YES_NO},
-    "bifurcation_diagram": {"crossing_direction": DIRECTION},
+    "bifurcation_diagram": {"crossing_direction": DIRECTION, "status": STATUS},
     "chains": {"outcome": {-1: "undetermined", 0: "not_synchronized", 1: "synchronized"}},
     "bifurcations": {
         "kind": BIFURCATION,
