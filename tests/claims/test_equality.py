@@ -88,6 +88,8 @@ def seen_at(values: list[float]) -> Alteration:
 TEN = [round(0.01 * k - 0.005, 3) for k in range(1, 11)]
 SLIPPING = alter("phases", "slipping_amplitude", 0.05)
 LOST = alter("phases", "branch", 2, phase_difference=30.0, amplitude=0.05)
+#: Motion in phase, where every mode has the amplitude ratio 1.
+IN_ONE_MODE = both(alter("rotation", "mode_end_ratio", 1.0), alter("rotation", "detuned_end_phase", 0.0))
 SHORT = reached(0, initial="minus", a=lambda a: a < 0.087)
 
 
@@ -101,7 +103,8 @@ SHORT = reached(0, initial="minus", a=lambda a: a < 0.087)
         ("not_differentiable_at_events", FAILS, alter("stick_slip", "stop_jump", 1e-9)),
         ("not_differentiable_at_events", FAILS, alter("stick_slip", "start_jump", 1e-9)),
         ("antiphase_persists", NOT_TESTABLE, everywhere("stick_slip", "velocity_correlation", 0.0)),
-        ("branch_locked", READING, alter("rotation", "detuned_mode_share", 0.95)),
+        ("branch_locked", READING, both(IN_ONE_MODE, alter("rotation", "detuned_end_ratio", 0.62))),
+        ("branch_locked", HOLDS, both(IN_ONE_MODE, alter("rotation", "detuned_end_ratio", 0.6199))),
         (
             "branch_locked",
             FAILS,
