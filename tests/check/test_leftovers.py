@@ -16,18 +16,20 @@ from tests.check.damages import POINT
 from tests.workflow.conftest import TINY
 from tests.workflow.planned import planned
 
-#: Of another state, law, a or number of blocks than those of the study, or where none is computed.
+#: Of another state, law, a or number of blocks than those of the study, where none is computed, or of earlier versions.
 LEFT_OVER = """
 points/linearized/wave/a0.0500.nc points/other/minus/a0.0500.nc points/linearized/minus/a0.0600.nc
 points/linearized/minus/a0.0500_v0.2000.nc chunks/3.done logs/chunk/3.log benchmarks/chunk/3.tsv
 solvers/rk4/linearized/minus/a0.0500.nc solvers/map/nonlinear/minus/a0.0800.nc
 logs/simulate/linearized/wave/a0.0500.log benchmarks/simulate/linearized/wave/a0.0500.tsv
 logs/simulate_solver/rk4/other/minus/a0.0800.log
+SHA256SUMS figures/orbits.png.corrupt summary/agreement.csv.corrupt report.html.corrupt
 """
 #: Of the study, or of a name that no run writes.
 NOT_LEFT_OVER = """
 figures/mine.png summary/other.nc points/notes.txt points/linearized/minus/a0.0500_copy.nc chunks/mine.done
 chains/blocks10.nc summary/chains.nc figures/chains.png logs/simulate/mine.log logs/mine.log benchmarks/mine.tsv
+notes.corrupt figures/mine.png.corrupt summary/runs.nc.corrupt copy/SHA256SUMS
 """
 #: Of stages that are left out.
 OF_STAGES = {

@@ -24,11 +24,11 @@ agreement attractor_kinds basin_fractions basins bifurcation_diagram bifurcation
 detuning distance edges equilibrium friction_laws grid_distance grid_exponents grid_kinds lyapunov mean_distance
 motion_{initial} orbits phases rotation sketch slip_map solvers stick_slip two_blocks
 """
-#: Results of which there is one for each run, chunk, law, map or chain, and the report.
+#: Results of which there is one for each run, chunk, law, map or chain.
 _OTHERS = """
 points/{run}.nc solvers/{solver}/{run}.nc chunks/{number}.done attractors/{law}.nc refined/{law}.nc returns/{law}.nc
 basins/{law}/{a}/tile{number}.nc basins/{law}/{a}/pairs.nc bifurcations/{law}.nc edges/{law}.nc phases/{law}.nc
-catalogues/{law}/{a}.nc chains/blocks{number}.nc report.html
+catalogues/{law}/{a}.nc chains/blocks{number}.nc
 """
 #: Jobs that do not have the name of their summary or figure.
 _JOBS = """
@@ -41,7 +41,7 @@ _EARLIER_SUMMARIES, _EARLIER_FIGURES = (
     "bifurcation grid",
     "bifurcation bifurcation_refined bifurcation_diagram_refined windows",
 )
-_EARLIER_OTHERS, _EARLIER_JOBS = "stretches/{number}.done", "stretch/{number}"
+_EARLIER_OTHERS, _EARLIER_JOBS = "SHA256SUMS stretches/{number}.done", "stretch/{number}"
 
 _LAW, _INITIAL = LAW_NAME.pattern, STATE_NAME.pattern
 #: {part of a name: its pattern}
@@ -58,12 +58,18 @@ _PATTERNS = {
 def _names() -> list[str]:
     summaries = f"{_SUMMARIES} {_EARLIER_SUMMARIES}".split()
     figures = f"{_FIGURES} {_EARLIER_FIGURES}".split()
+    texts = [
+        "report.html",
+        *(f"summary/{name}" for name in _TEXTS.split()),
+        *(f"figures/{name}.{suffix}" for name in figures for suffix in ("pdf", "png")),
+    ]
     jobs = [*f"{_JOBS} {_EARLIER_JOBS}".split(), *summaries, *(f"figure_{name}" for name in figures)]
     return [
         *f"{_OTHERS} {_EARLIER_OTHERS}".split(),
         *(f"summary/{name}.nc" for name in summaries),
-        *(f"summary/{name}" for name in _TEXTS.split()),
-        *(f"figures/{name}.{suffix}" for name in figures for suffix in ("pdf", "png")),
+        *texts,
+        # Earlier versions set corrupt texts and pictures aside.
+        *(f"{name}.corrupt" for name in texts),
         *(f"logs/{job}.log" for job in jobs),
         *(f"benchmarks/{job}.tsv" for job in jobs),
     ]
