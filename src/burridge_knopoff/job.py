@@ -19,7 +19,6 @@ from burridge_knopoff.provenance.files import reserve_room, write_text
 from burridge_knopoff.provenance.keys import nested
 from burridge_knopoff.provenance.origin import OWN_ATTRIBUTES, Origin, check_origin, other_params, with_origin
 from burridge_knopoff.provenance.record import NAME, read_study_record, study_folder
-from burridge_knopoff.provenance.sums import add_sums
 from burridge_knopoff.summaries.points import Grid
 
 
@@ -114,4 +113,3 @@ class Job:
             from burridge_knopoff.figures.style import write_figure
 
             write_figure(contents[0], *pictures, origins=pictures)
-        add_sums(self.results, [name for name in names if not name.endswith(".nc")])

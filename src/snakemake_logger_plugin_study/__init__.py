@@ -26,7 +26,7 @@ from burridge_knopoff.study.job_log import SILENT, failure_line, failure_reason,
 from burridge_knopoff.study.yaml_file import ConfigError
 from snakemake_logger_plugin_study.closing import closing_lines
 from snakemake_logger_plugin_study.command_line import check_command_line
-from snakemake_logger_plugin_study.display import dry_run_lines, first_line, picture, progress_line
+from snakemake_logger_plugin_study.display import dry_run_lines, first_line, newer_lines, picture, progress_line
 from snakemake_logger_plugin_study.durations import measured_seconds
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, Run
@@ -124,7 +124,8 @@ class LogHandler(LogHandlerBase):
             # As without hooks, Snakemake's own messages are all there is.
             self._shows_all = True
         elif not run.touching:
-            self._write(first_line(run, self._begin))
+            for line in (*newer_lines(run), first_line(run, self._begin)):
+                self._write(line)
             if self._console.is_interactive:
                 draw = partial(picture, run, self._begin)
                 self._picture = Live(get_renderable=draw, console=self._console, refresh_per_second=1, transient=True)

@@ -47,9 +47,21 @@ def dry_run_lines(run: Run) -> list[str]:
     size = sum(run.durations.shipped_cost(job.rule)[1] for job in run.jobs.values())
     disk = f"{size / 1e9:.1f} GB" if size >= 1e9 else f"{max(round(size / 1e6), 1)} MB"
     return [
+        *newer_lines(run),
         *(f"{name:{width}}  {count:>6}  {cpu}" for name, count, cpu in rows),
         f"a run takes {format_estimate(run.time_left(0.0))} {run.capacity} and {disk} of disk space "
         "(snakemake -n -p lists the jobs)",
+    ]
+
+
+def newer_lines(run: Run) -> list[str]:
+    """Return a line about files that are newer than files made from them, if there are any: a reason for many jobs."""
+    if not run.newer:
+        return []
+    files = format_count(len(run.newer), "file")
+    return [
+        f"newer than files made from them: {files}, such as {next(iter(run.newer))} "
+        "(cp -r gives all copied files new times, cp -a keeps the times)"
     ]
 
 

@@ -72,6 +72,8 @@ class Plan:
             cores,
             f"on {format_count(cores, 'core')}",
             self.workflow.touch,
+            # Inputs that other jobs are about to make are not among them.
+            sorted({file for why in map(dag.reason, numbers) for file in why.updated_input - why.updated_input_run}),
         )
 
 

@@ -75,6 +75,7 @@ class Run:
     durations : durations of jobs, as known before the first one begins
     cores : number of cores, or of simultaneous jobs on a cluster; capacity : the same in words
     touching : whether the run only sets the times of files, as `snakemake --touch` does
+    newer : existing files that are newer than files made from them, which are therefore made again
     """
 
     results: str = ""
@@ -84,6 +85,7 @@ class Run:
     cores: float = 1.0
     capacity: str = "on 1 core"
     touching: bool = False
+    newer: Collection[str] = ()
 
     def jobs_in(self, state: str) -> list[Job]:
         """Return the jobs in a state."""

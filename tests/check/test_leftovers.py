@@ -11,22 +11,25 @@ from burridge_knopoff import open_study
 from burridge_knopoff.cli import main
 from burridge_knopoff.provenance.record import read_study_record, write_study_record
 from burridge_knopoff.study.load import load_study
+from tests.check.conftest import change_record
 from tests.check.damages import POINT
 from tests.workflow.conftest import TINY
 from tests.workflow.planned import planned
 
-#: Of another state, law, a or number of blocks than those of the study, or where none is computed.
+#: Of another state, law, a or number of blocks than those of the study, where none is computed, or of earlier versions.
 LEFT_OVER = """
 points/linearized/wave/a0.0500.nc points/other/minus/a0.0500.nc points/linearized/minus/a0.0600.nc
 points/linearized/minus/a0.0500_v0.2000.nc chunks/3.done logs/chunk/3.log benchmarks/chunk/3.tsv
 solvers/rk4/linearized/minus/a0.0500.nc solvers/map/nonlinear/minus/a0.0800.nc
 logs/simulate/linearized/wave/a0.0500.log benchmarks/simulate/linearized/wave/a0.0500.tsv
 logs/simulate_solver/rk4/other/minus/a0.0800.log
+SHA256SUMS figures/orbits.png.corrupt summary/agreement.csv.corrupt report.html.corrupt
 """
 #: Of the study, or of a name that no run writes.
 NOT_LEFT_OVER = """
 figures/mine.png summary/other.nc points/notes.txt points/linearized/minus/a0.0500_copy.nc chunks/mine.done
 chains/blocks10.nc summary/chains.nc figures/chains.png logs/simulate/mine.log logs/mine.log benchmarks/mine.tsv
+notes.corrupt figures/mine.png.corrupt summary/runs.nc.corrupt copy/SHA256SUMS
 """
 #: Of stages that are left out.
 OF_STAGES = {
@@ -48,7 +51,7 @@ def record(results, config, files, file="study.yaml"):
 
 
 def test_what_is_not_of_the_study_is_pruned_and_nothing_else(results, capsys):
-    """Points of any study by their names, other files of earlier runs by the record. They are not checked or opened."""
+    """By their names. They are not checked or opened."""
     config = {**yaml.safe_load(TINY), "without": ["attractors", "proof"]}
     Path("study.yaml").write_text(json.dumps(config))
     # The next run has not made them again yet.
@@ -87,6 +90,37 @@ def test_what_is_not_of_the_study_is_pruned_and_nothing_else(results, capsys):
     assert (results / "../outside/minus/a0.0500.nc").exists()
     assert main(["prune", str(results)]) == 0
     assert capsys.readouterr().out == f"{results}: 0 files deleted\n"
+
+
+#: Files of other people, which a record may name.
+OF_OTHERS = ["notes/diary.txt", "summary/mine.csv", "figures/mine.png", "copy/summary/runs.nc", "logs/mine.log"]
+
+
+def test_a_record_that_names_other_files_deletes_none(results, capsys):
+    """A folder from elsewhere may have any record; those of earlier versions have a list of files to delete."""
+    for name in OF_OTHERS:
+        (results / name).parent.mkdir(parents=True, exist_ok=True)
+        (results / name).write_text("mine\n")
+
+    def name_others(record):
+        record["left"] = dict.fromkeys([*OF_OTHERS, "../../study.yaml", "summary/runs.nc"], OF_OTHERS[0])
+        record["files"] |= {"summary/other.nc": "notes/diary.log", "notes/diary.log": "notes/diary.txt"}
+
+    change_record(results, name_others)
+    before = files_in(results)
+    assert main(["prune", str(results)]) == 0
+    assert capsys.readouterr().out == f"{results}: 0 files deleted\n"
+    assert files_in(results) == before
+    assert Path("study.yaml").exists()
+
+
+def test_a_record_without_a_list_of_files_deletes_nothing(results, capsys):
+    """Those of earlier versions: every summary would be left over."""
+    shutil.copy(results / POINT, (results / POINT).with_name("a0.0600.nc"))
+    change_record(results, lambda record: record.pop("files"))
+    before = files_in(results)
+    assert main(["prune", str(results)]) == 0
+    assert files_in(results) == before
 
 
 FOREIGN = {

@@ -20,7 +20,7 @@ from burridge_knopoff.show.result import open_result
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.summaries.points import Grid, open_point
 from tests.check.conftest import change_record
-from tests.check.damages import DAMAGES, POINT
+from tests.check.damages import DAMAGES, POINT, cut, rewrite
 from tests.forged import forge
 
 
@@ -69,6 +69,10 @@ def begun(path):
     path.write_bytes(path.read_bytes()[:5])
 
 
+def halved(path):
+    rewrite(path, cut)
+
+
 def foreign(path):
     write_summary(xr.Dataset({"x": ("x", np.zeros(3))}), path)
 
@@ -84,9 +88,10 @@ RUNS = [f"solvers/{solver}/linearized/minus/a0.2000.nc" for solver in ("map", "r
 BAD = [
     ("summary/bifurcation_diagram.nc", begun, "corrupt", "is corrupt"),
     ("summary/agreement.txt", emptied, "corrupt", "is empty"),
-    ("summary/claims.json", begun, "corrupt", "was changed after it was written"),
-    ("figures/lyapunov.png", begun, "corrupt", "was changed after it was written"),
-    ("figures/lyapunov.pdf", begun, "corrupt", "was changed after it was written"),
+    ("summary/claims.json", halved, "corrupt", "is cut, or not JSON"),
+    ("figures/lyapunov.png", halved, "corrupt", "is cut, or not a PNG picture"),
+    ("figures/orbits.png", emptied, "corrupt", "is empty"),
+    ("figures/lyapunov.pdf", halved, "corrupt", "is cut, or not a PDF file"),
     ("report.html", emptied, "corrupt", "is empty"),
     ("summary/mean_distance.nc", foreign, "outdated", "was not made in a study"),
     (TILES[1], replacement("1.nc", "0.nc"), "outdated", f"is another file: got {TILES[0]}, expected {TILES[1]}"),

@@ -5,6 +5,8 @@ import os
 import re
 import shlex
 import shutil
+import subprocess
+import time
 
 import pytest
 
@@ -12,7 +14,7 @@ from burridge_knopoff.check.study import check_study
 from burridge_knopoff.dataset.summary import open_summary
 from tests.check.damages import DAMAGES, POINT, cut, edit, noise_inside, rewrite
 from tests.forged import forge
-from tests.workflow.conftest import TINY, copied
+from tests.workflow.conftest import TINY, Study, copied
 from tests.workflow.faults import check_end, failures, remedies
 from tests.workflow.snakemake import run_snakemake
 
@@ -105,28 +107,83 @@ def test_the_claims_and_the_report_stop_at_a_bad_file(copy, name, rule):
     assert [command.partition(" -R ")[2] for command in remedies(run.stderr)] == [f"results/tiny/{name}"]
 
 
-def test_corrupt_and_lost_texts_and_pictures_are_made_again(copy, finished):
-    """No job needs to read them; the next run checks them itself, and keeps what it replaces."""
+#: A list of checksums that an earlier version left, after damage; None is a study from before the list.
+LISTS = {
+    "none": lambda text: None,
+    "cut": lambda text: text[: len(text) // 2],
+    "by sha256sum -b": lambda text: text.replace("  ", " *"),
+    "of other files": lambda text: re.sub("^.", "x", text, flags=re.MULTILINE),
+}
+
+
+def others_than(results, *starts):
+    """Return {file: bytes and time} of the files whose names do not begin so."""
+    names = {path.relative_to(results).as_posix(): path for path in results.rglob("*") if path.is_file()}
+    return {
+        name: (path.read_bytes(), path.stat().st_mtime_ns)
+        for name, path in names.items()
+        if not name.startswith((*starts, "study.json"))
+    }
+
+
+def test_no_start_removes_or_renames_a_result(copy):
+    """Whatever is in a list of checksums of an earlier version; an edited table stays, and so does a cut picture."""
     results = copy.folder / "results/tiny"
-    for name in ("summary/claims.json", "figures/orbits.png"):
+    names = sorted(others_than(results, "logs", "benchmarks"))
+    listing = subprocess.run(["sha256sum", *names], cwd=results, capture_output=True, text=True, check=True).stdout
+    with (results / "summary/agreement.csv").open("a") as file:
+        file.write("a row of mine\n")
+    rewrite(results / "figures/lyapunov.png", cut)
+    (results / "summary/agreement.txt").write_bytes(b"")
+    of_point = [f"{start}/linearized/minus/a0.2000" for start in ("points", "logs/simulate", "benchmarks/simulate")]
+    for damage in LISTS.values():
+        if (text := damage(listing)) is not None:
+            (results / "SHA256SUMS").write_text(text)
+        (results / POINT).unlink()
+        before = others_than(results, *of_point)
+        assert "agreement" not in copy.ok(f"results/tiny/{POINT}")
+        assert (results / POINT).is_file()
+        assert others_than(results, *of_point) == before
+    before = others_than(results)
+    # Nor does a dry run, or an option with which Snakemake runs no job.
+    for arguments in (["-n"], ["--summary"], ["--rulegraph"]):
+        copy.ok(*arguments)
+    assert others_than(results) == before
+
+
+def test_corrupt_and_lost_texts_and_pictures_are_made_again_by_the_command_of_bk_check(copy, finished):
+    """Few jobs read them."""
+    results = copy.folder / "results/tiny"
+    for name in ("summary/claims.json", "figures/orbits.png", "figures/lyapunov.pdf"):
         as_old_as(results / name, lambda path: rewrite(path, cut))
     as_old_as(results / "summary/agreement.txt", lambda path: path.write_bytes(b""))
-    (results / "figures/orbits.pdf").unlink()
-    output = copy.ok("-n")
-    assert "results/tiny/summary/agreement.txt: is empty: it would be made again" in output
-    # These do not run the study either.
-    for flag in ("--rulegraph", "--summary"):
-        copy.ok(flag)
-    findings = {finding.path.name: finding.kind for finding in check_study(results).findings}
-    kinds = {**dict.fromkeys(("claims.json", "orbits.png", "agreement.txt"), "corrupt"), "orbits.pdf": "missing"}
-    assert kinds.items() <= findings.items()
-    output = copy.ok()
-    assert "results/tiny/figures/orbits.png: was changed after it was written: it is made again" in output
-    assert (results / "figures/orbits.png.corrupt").read_bytes() == cut((results / "figures/orbits.png").read_bytes())
-    for path in results.rglob("*.corrupt"):
-        path.unlink()
+    (results / "figures/agreement.pdf").unlink()
+    checked = check_study(results)
+    findings = {finding.path.name: finding.kind for finding in checked.findings}
+    corrupt = dict.fromkeys(("claims.json", "orbits.png", "lyapunov.pdf", "agreement.txt"), "corrupt")
+    assert {**corrupt, "agreement.pdf": "missing"}.items() <= findings.items()
+    # A job that reads one stops at it.
+    run = copy.run("-R", "report", "--until", "report")
+    (reason,) = failures(run.stderr).values()
+    assert re.fullmatch(r"results/tiny/(summary/claims\.json|figures/orbits\.png): is cut, or not .*", reason)
+    copy.ok("-R", *(path.removeprefix(f"{copy.folder}/") for path in checked.paths))
     assert not check_study(results).findings
     check_end(copy, finished)
+
+
+def test_a_copy_without_times_says_why_jobs_run(copy, tmp_path):
+    """`cp -r` gives files new times, in the order in which it copies them; `cp -a` keeps the times."""
+    for options, is_whole in (("-a", True), ("-r", False)):
+        other = Study(tmp_path / options)
+        (other.folder / "results").mkdir()
+        subprocess.run(["cp", options, copy.folder / "results/tiny", other.folder / "results"], check=True)
+        if not is_whole:
+            later = time.time() + 60
+            os.utime(other.folder / "results/tiny" / POINT, (later, later))
+        told = other.ok("-n")
+        assert ("Nothing to be done" in told) == is_whole
+        named = re.findall(r"^newer than files made from them: \d+ files?, such as (\S+) \(", told, re.MULTILINE)
+        assert [(other.folder / name).is_file() for name in named] == [] if is_whole else [True]
 
 
 def test_touching_files_does_not_hide_other_params(copy):

@@ -43,13 +43,23 @@ def test_exactly_the_points_of_the_config_exist(results):
     assert not list(results.rglob(".*"))
 
 
-def test_sha256sum_checks_a_finished_study(results):
-    """Without this program."""
-    subprocess.run(["sha256sum", "--check", "--strict", "--quiet", "SHA256SUMS"], cwd=results, check=True)
-    listed = {line.split("  ")[1] for line in (results / "SHA256SUMS").read_text().splitlines()}
-    others = {"SHA256SUMS", "study.json"}
-    files = {path.relative_to(results).as_posix() for path in results.rglob("*") if path.is_file()} - others
-    assert listed == {name for name in files if not name.startswith(("logs/", "benchmarks/"))}
+def test_sha256sum_checks_an_archive(results, tmp_path, repository):
+    """Without this program, by the lines of docs/data.md."""
+    page = (repository / "docs/data.md").read_text()
+    write, check = (re.search(rf"^{start}.*", page, re.MULTILINE)[0] for start in ("find paper", "sha256sum -c"))
+
+    def run(line):
+        line = line.replace("paper", "tiny")
+        return subprocess.run(["bash", "-o", "pipefail", "-c", line], cwd=tmp_path, capture_output=True, text=True)
+
+    copy = shutil.copytree(results, tmp_path / "tiny")
+    assert run(write).returncode == 0
+    listed = [line.partition("  ")[2] for line in (tmp_path / "tiny.sha256").read_text().splitlines()]
+    assert sorted(listed) == sorted(f"tiny/{name}" for name in files_of(copy))
+    assert run(check).returncode == 0
+    with (copy / "summary/agreement.csv").open("a") as file:
+        file.write("\n")
+    assert run(check).returncode == 1
 
 
 def test_every_file_has_its_metadata(results):

@@ -1,5 +1,5 @@
-# What happens when the workflow has been read, and when a run starts: the study is recorded in its folder, corrupt texts and
-# pictures are set aside, and remarks are printed.
+# What happens when the workflow has been read, and when a run starts: the study is recorded in its folder, and remarks are
+# printed. No result is removed or renamed; only the empty marks of incomplete chunks are removed.
 
 
 def record_study():
@@ -72,18 +72,13 @@ def prepare_results():
     PLAN.announce()
 
 
-def set_corrupt_aside(makes_files):
-    """Set corrupt texts and pictures aside, so that Snakemake finds them missing; say so if this run makes no files."""
-    for path, reason in corrupt_files(STUDY, Path(RESULTS), map(inside, FILES)):
-        words = "would be made again"
-        # Someone may have edited it on purpose. Otherwise it is empty, or its job was killed.
-        if makes_files and reason == CHANGED:
-            path.replace(f"{path}.corrupt")
-            words = f"is made again; kept as {path.name}.corrupt"
-        elif makes_files:
-            path.unlink()
-            words = "is made again"
-        write_line(f"{path}: {reason}: it {words}")
+def remove_marks(makes_files):
+    """Remove marks of incomplete chunks, so that Snakemake finds them missing; say so if this run makes no files."""
+    for mark in incomplete_chunks(STUDY, Path(RESULTS)):
+        if makes_files:
+            mark.unlink()
+        words = "is" if makes_files else "would be"
+        write_line(f"{mark}: a point of this chunk is missing or was changed: it {words} made again")
 
 
 add_files()
@@ -103,7 +98,7 @@ if workflow.is_main_process:
         sys.exit(f"--report: {RESULTS} is missing: run the study first, by the same command without --report")
     IS_DRY_RUN, OTHER_RUN = workflow.output_settings.dryrun, is_locked(Path(RESULTS))
     if not OTHER_RUN:
-        set_corrupt_aside(runs_jobs(sys.argv[1:]) and not IS_DRY_RUN)
+        remove_marks(runs_jobs(sys.argv[1:]) and not IS_DRY_RUN)
     # A dry run calls no hook.
     if IS_DRY_RUN:
         print_remarks()
@@ -111,7 +106,3 @@ if workflow.is_main_process:
 
 onstart:
     prepare_results()
-
-
-onsuccess:
-    write_sums(Path(RESULTS), [*run_files(STUDY), *map(inside, FILES)])

@@ -24,7 +24,6 @@ from burridge_knopoff.check.study import is_locked
 from burridge_knopoff.claims.paper import CLAIMS, READS
 from burridge_knopoff.figures.description import figure_descriptions
 from burridge_knopoff.proof.scope import LARGEST_V, NONLINEAR_V
-from burridge_knopoff.provenance.bad_file import CHANGED
 from burridge_knopoff.provenance.files import (
     check_folder,
     display_path,
@@ -33,11 +32,9 @@ from burridge_knopoff.provenance.files import (
 from burridge_knopoff.provenance.keys import select
 from burridge_knopoff.provenance.record import check_owner, write_study_record
 from burridge_knopoff.provenance.sources import source_fingerprint
-from burridge_knopoff.provenance.sums import write_sums
 from burridge_knopoff.running.settings import SOLVERS
-from burridge_knopoff.study.chunks import chunks
+from burridge_knopoff.study.chunks import chunks, incomplete_chunks
 from burridge_knopoff.study.command_line import config_arguments, of_command_line
-from burridge_knopoff.study.integrity import corrupt_files
 from burridge_knopoff.study.keys import (
     condition_refusal,
     length_refusal,
@@ -55,7 +52,7 @@ from burridge_knopoff.study.remarks import (
     override_remarks,
     remarks,
 )
-from burridge_knopoff.study.study import run_files, solver_points
+from burridge_knopoff.study.study import solver_points
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
 from snakemake_logger_plugin_study.command_line import check_one_config, runs_jobs
 from snakemake_logger_plugin_study.plan import PLAN

@@ -2,20 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from burridge_knopoff.study.paths import VALUE
+from burridge_knopoff.check.file_names import is_of_workflow
 from burridge_knopoff.study.study import Study, run_files
-
-_VALUES = rf"[A-Za-z]\w*?{VALUE}(?:_[A-Za-z]\w*?{VALUE})*"
-#: Point files of any study, marks of chunks, and the logs and benchmarks of their jobs.
-_OF_RUNS = re.compile(
-    r"(?:points|solvers/\w+|(?:logs|benchmarks)/simulate(?:_solver/\w+)?)/[a-z]\w*/[A-Za-z]\w*/"
-    rf"{_VALUES}\.(?:nc|log|tsv)|chunks/\d+\.done|(?:logs|benchmarks)/chunk/\d+\.(?:log|tsv)"
-)
 
 
 def run_logs(study: Study) -> dict[str, str]:
@@ -26,16 +18,21 @@ def run_logs(study: Study) -> dict[str, str]:
 
 
 def leftovers(results: Path, study: Study, record: Mapping[str, Any]) -> list[Path]:
-    """Return results, logs and benchmarks of jobs that the study no longer has; record : of its last run."""
+    """Return results, logs and benchmarks of jobs that the study no longer has; record : of its last run.
+
+    Files of other names than those of the workflow are never among them, nor are files that a link leads to. There are
+    none by a record of an earlier version, which lists no files.
+    """
+    if not record["files"]:
+        return []
     files, whole = {**record["files"], **run_logs(study)}, results.resolve()
     expected_names = {*files, *_logs(files.values())}
-    left = {*record["left"], *_logs(record["left"].values())}
     names = {path: path.relative_to(results).as_posix() for path in sorted(results.rglob("*"))}
     return [
         path
         for path, name in names.items()
         if name not in expected_names
-        and (name in left or _OF_RUNS.fullmatch(name))
+        and is_of_workflow(name)
         # The target of a link does not belong to the study.
         and path.resolve() == whole / name
         and path.is_file()

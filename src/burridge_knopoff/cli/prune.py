@@ -6,8 +6,9 @@ import argparse
 from pathlib import Path
 
 DESCRIPTION = """Delete and list files of laws, initial states, values of a and stages that are no longer in the config
-of the last run, with their logs and benchmarks. Files with other names are kept. Nothing is deleted if a point is
-missing or a file is outdated, since the record of the last run may then be that of another study."""
+of the last run, with their logs and benchmarks, and files that only earlier versions wrote. Files of other names are
+kept. Nothing is deleted if a point is missing or a file is outdated, since the record of the last run may then be that
+of another study."""
 
 EXAMPLES = """  bk prune --dry-run results/paper
   bk prune results/paper

@@ -17,7 +17,7 @@ from typing import Any
 from burridge_knopoff.provenance.bad_file import BadFile
 from burridge_knopoff.provenance.keys import difference, value_of
 from burridge_knopoff.provenance.opening import open_whole
-from burridge_knopoff.provenance.sums import check_sum
+from burridge_knopoff.provenance.whole import check_whole
 
 #: Name of the origin in the metadata of a picture or a report, and in claims.json.
 NAME = "origin"
@@ -69,7 +69,7 @@ def with_origin(text: str, name: str, origin: Origin) -> str:
     return text.replace("</head>", f"{meta}\n</head>", 1) if name.endswith(".html") else text
 
 
-def read_origin(path: Path, results: Path) -> tuple[Origin | None, str]:
+def read_origin(path: Path) -> tuple[Origin | None, str]:
     """Return the origin of an intact file of a study, and its checksum.
 
     Raises BadFile if the file is missing or corrupt.
@@ -77,7 +77,7 @@ def read_origin(path: Path, results: Path) -> tuple[Origin | None, str]:
     if path.suffix == ".nc":
         with open_whole(path) as dataset:
             return Origin.from_attributes(vars(dataset)), dataset.checksum
-    checksum = check_sum(results, path.relative_to(results).as_posix())
+    checksum = check_whole(path)
     try:
         return Origin(**_embedded(path)), checksum
     # None, or none that can be read.
@@ -107,10 +107,10 @@ def check_origin(path: Path, results: Path, record: Mapping[str, Any]) -> tuple[
 
     record : of the study, see `provenance.record`
 
-    Returns its origin, None for a text or a picture that has none and that its checksum identifies, and its checksum.
+    Returns its origin, None for a text or a picture that has none, and its checksum.
     Raises BadFile, one line with the difference. Files that other sources made are accepted.
     """
-    origin, checksum = read_origin(path, results)
+    origin, checksum = read_origin(path)
     name = path.relative_to(results).as_posix()
     if origin is None:
         if path.suffix in _WITH_ORIGIN:

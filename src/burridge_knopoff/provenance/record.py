@@ -21,7 +21,7 @@ NAME = "study.json"
 #: {key of a record: its type}
 _TYPES = {
     **dict.fromkeys(("software", "git_commit", "arguments", "config_file"), str),
-    **dict.fromkeys(("given", "config", "grid", "files", "left"), dict),
+    **dict.fromkeys(("given", "config", "grid", "files"), dict),
 }
 
 
@@ -58,13 +58,7 @@ def write_study_record(
     Raises OSError, one line, if the folder cannot be written to.
     """
     path = Path(results, NAME)
-    left: dict[str, str] = {}
-    with contextlib.suppress(ValueError):
-        earlier = read_study_record(results)
-        logs = {**earlier["left"], **earlier["files"]}
-        gone = {name: log for name, log in logs.items() if name not in files}
-        left = {name: log for name, log in gone.items() if any(Path(results, place).exists() for place in (name, log))}
-    values = (SOFTWARE, git_commit(), arguments, display_path(config_file), given, config, grid, files, left)
+    values = (SOFTWARE, git_commit(), arguments, display_path(config_file), given, config, grid, files)
     text = json.dumps(dict(zip(_TYPES, values, strict=True)), indent=1, ensure_ascii=False) + "\n"
     if not (path.is_file() and path.read_bytes() == text.encode()):
         write_text(path, text)
@@ -78,7 +72,6 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
     given, config : the content of the config file, and the config with all defaults
     grid : {parameter: {name in file names: value}}
     files : {file that the workflow makes, except points: its log}
-    left : the same of those files of earlier runs that the workflow does not make any more
 
     Raises ValueError, one line, if there is no record.
     """
@@ -91,10 +84,10 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
         raise ValueError(f"{folder}: {reason if Path(results).exists() else 'this folder does not exist'}") from None
     except (ValueError, RecursionError):
         record = None
-    # Records of earlier versions have more keys, and no lists of files.
-    complete = {"files": {}, "left": {}, **record} if isinstance(record, dict) else {}
+    # Records of earlier versions have more keys, and no list of files.
+    complete = {"files": {}, **record} if isinstance(record, dict) else {}
     types = {key: type(complete.get(key)) for key in _TYPES}
-    if types != _TYPES or not all(isinstance(log, str) for key in ("files", "left") for log in complete[key].values()):
+    if types != _TYPES or not all(isinstance(log, str) for log in complete["files"].values()):
         raise ValueError(f"{escape_unprintable(str(path))}: not a valid record; run snakemake again to rewrite it")
     return complete
 
