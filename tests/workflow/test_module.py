@@ -82,8 +82,14 @@ def test_a_summary(host):
         "note     Snakefile: imports the study; the config of the last run is checked"
     ]
     assert open_study(results)["summary/runs"].sizes["a"] == 1
-    # A changed config gets on record, and repeats what uses it.
+
+
+@pytest.mark.slow
+def test_the_record_follows_the_config(host):
+    host.ok("mine")
+    results = host.folder / "results" / "tiny"
     record = (results / "study.json").read_bytes()
+    # A dry run leaves it as it is.
     host.write(stick_slip={**TINY, "window": 70, "basins": {"pixels": 8}})
     assert host.jobs("mine") == {"stick_slip_simulate", "stick_slip_runs", "mine"}
     assert (results / "study.json").read_bytes() == record
@@ -100,6 +106,7 @@ def test_a_summary(host):
     assert check_study(results).exit_code == 0
 
 
+@pytest.mark.slow
 def test_the_command_of_a_remedy_is_that_of_the_workflow(host):
     host.write()
     (host.folder / "other.yaml").write_text(yaml.safe_dump({"stick_slip": TINY}))
@@ -123,6 +130,7 @@ def test_without_the_last_lines_of_the_recipe_a_job_says_what_is_missing(tmp_pat
     assert "a workflow that imports a study calls its onstart (config/README.md)" in log
 
 
+@pytest.mark.slow
 def test_two_studies(tmp_path):
     """Each has its rules, files and record."""
     onstart = "\nonstart:\n    stick_slip.onstart()\n"
