@@ -159,10 +159,11 @@ def test_a_whole_study(tmp_path):
     config = {
         **SMALL,
         "study": "tiny",
-        "catalogue": {"a": [0.2]},
+        "catalogue": {"a": [0.2], "transient": 100, "window": 200},
         "edges": {"a": [0.05], "duration": 800, "samples": 20},
     }
-    config["chains"] = {**config["chains"], "blocks": [2, 3], "samples": 4, "symmetric_samples": 2}
+    few = {"blocks": [2, 3], "a": [0.05], "samples": 4, "symmetric_samples": 2, "time_limit": 500}
+    config["chains"] = {**config["chains"], **few}
     host = Host(tmp_path, RECIPE, stick_slip=config)
     host.ok("stick_slip_all")
     results = tmp_path / "results" / "tiny"
