@@ -1,9 +1,9 @@
 """Cost of planning studies of many points, and the disk space that they need: the numbers of docs/cluster.md.
 
-For each number of points a config is written and planned (`snakemake -n`), and one of its points is planned alone, as
-every submitted job does before it begins. Numbers of points above `--largest` are not planned but extrapolated: a
-straight line through the last two that were measured, which is the least. The size of a point file is the mean over a
-sample of runs with the default settings.
+For each number of points a config is written and planned (`snakemake -n`), on this machine and for Slurm, where points
+form groups; and one of its points is planned alone, as every submitted job does before it begins. Numbers of points
+above `--largest` are not planned but extrapolated: a straight line through the last two that were measured, which is
+the least. The size of a point file is the mean over a sample of runs with the default settings.
 """
 
 from __future__ import annotations
@@ -13,13 +13,16 @@ import math
 import statistics
 import subprocess
 import tempfile
+from itertools import chain
 from pathlib import Path
 
 import yaml
 from measure import print_table
 from process import BIN, REPOSITORY, SNAKEMAKE, run
 
-PROFILE = REPOSITORY / "workflow" / "profiles" / "slurm" / "config.yaml"
+PROFILE = REPOSITORY / "workflow" / "profiles" / "slurm"
+#: Profiles with which studies are planned, by the names of their columns.
+PROFILES = {"plan": REPOSITORY / "workflow" / "profiles" / "default", "plan for Slurm": PROFILE}
 #: Two laws and two initial states.
 POINTS_OF_A_VALUE = 4
 STEP = 1e-6
@@ -34,9 +37,9 @@ TARGET = "results/planning/points/linearized/plus/a0.100000.nc"
 FILES_OF_A_POINT = 4
 
 
-def planned(folder: Path, target: str) -> tuple[float, float]:
+def planned(folder: Path, target: str, profile: Path) -> tuple[float, float]:
     """Return CPU time in seconds and peak memory in MB of a dry run."""
-    command = [*SNAKEMAKE, "-n", "-d", str(folder), target]
+    command = [*SNAKEMAKE, "-n", "-d", str(folder), "--workflow-profile", str(profile), target]
     # The plan of many jobs is a long text.
     silent = ["sh", "-c", 'exec "$@" >/dev/null 2>&1', "sh"]
     used = run([*silent, *command, "--configfile", str(folder / "study.yaml")])
@@ -59,10 +62,10 @@ def point_size() -> float:
 def main() -> None:
     """Measure, extrapolate, and print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], allow_abbrev=False)
-    parser.add_argument("--points", type=int, nargs="+", default=[100, 1000, 10_000, 1_000_000])
+    parser.add_argument("--points", type=int, nargs="+", default=[100, 1000, 3000, 10_000, 1_000_000])
     parser.add_argument("--largest", type=int, default=10_000, help="planned in earnest (default: %(default)s)")
     options = parser.parse_args()
-    group = yaml.safe_load(PROFILE.read_text(encoding="utf-8"))["group-components"]["points"]
+    group = yaml.safe_load((PROFILE / "config.yaml").read_text(encoding="utf-8"))["group-components"]["points"]
     size = point_size()
     rows = []
     measured: list[tuple[int, list[float]]] = []
@@ -72,7 +75,8 @@ def main() -> None:
                 folder = Path(name)
                 last = 0.1 + (points // POINTS_OF_A_VALUE - 1) * STEP
                 (folder / "study.yaml").write_text(CONFIG.format(last=last), encoding="utf-8")
-                figures = [*planned(folder, "all"), *planned(folder, TARGET)]
+                plans = [planned(folder, "all", profile) for profile in PROFILES.values()]
+                figures = [*chain(*plans), *planned(folder, TARGET, PROFILE)]
             measured.append((points, figures))
             how = "measured"
         else:
@@ -90,7 +94,8 @@ def main() -> None:
                 how,
             ]
         )
-    header = ["points", "plan CPU s", "plan MB", "start of a job CPU s", "MB", "submissions", "files", "GB"]
+    plans = [f"{name} {unit}" for name in PROFILES for unit in ("CPU s", "MB")]
+    header = ["points", *plans, "start of a job CPU s", "MB", "submissions", "files", "GB"]
     print(f"\nPoints in groups of {group}; a point file has {size:.0f} KB.\n")
     print_table([*header, "how"], rows)
 

@@ -34,7 +34,8 @@ class Job:
     results : folder of the study
     cache : folder in which long jobs of the study cache their results, for other values of a or after a kill
 
-    Raises BadFile if an input is corrupt or not the expected one, ValueError if the results belong to another config.
+    Raises BadFile if an input is corrupt or not the expected one, ValueError if the results have no record of the study
+    or belong to another config.
     """
 
     def __init__(self, snakemake: Any) -> None:
@@ -43,7 +44,12 @@ class Job:
         logging.basicConfig(format="%(message)s")
         logging.getLogger("burridge_knopoff").setLevel(logging.INFO)
         folder = study_folder(snakemake.output[0])
-        self.results = Path(os.path.relpath(folder or Path(snakemake.output[0]).parent))
+        if folder is None:
+            raise ValueError(
+                f"{snakemake.output[0]}: no {NAME} in a folder above it: a workflow that imports a study calls its "
+                "onstart (config/README.md)"
+            )
+        self.results = Path(os.path.relpath(folder))
         self.config = nested(snakemake.params.config)
         self.wildcards, self.params = snakemake.wildcards, snakemake.params
         self.cores: int = snakemake.resources.get("cpus_per_task", snakemake.threads)

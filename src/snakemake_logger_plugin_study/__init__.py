@@ -152,5 +152,9 @@ class LogHandler(LogHandlerBase):
                 PLAN.record()
             return [NOTHING]
         if self.common_settings.dryrun and not self._has_stopped:
-            return dry_run_lines(PLAN.look_ahead())
-        return closing_lines(self._run, time.monotonic() - self._begin, self._has_stopped) if self._run.jobs else []
+            plan = PLAN.look_ahead()
+            # A rule such as `points`, named by --until, is a job that makes nothing.
+            return dry_run_lines(plan) if plan.jobs else [NOTHING]
+        if not self._run.jobs:
+            return []
+        return closing_lines(self._run, time.monotonic() - self._begin, self._has_stopped, sys.argv[1:])

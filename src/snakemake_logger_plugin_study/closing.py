@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from collections import Counter, defaultdict
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -11,6 +12,7 @@ from pathlib import Path
 from burridge_knopoff.dataset.decoding import decode_flags
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.job_log import SILENT, failure_line, failure_reason, is_interrupted, remedies
+from snakemake_logger_plugin_study.command_line import without_force
 from snakemake_logger_plugin_study.display import format_elapsed
 from snakemake_logger_plugin_study.run import DONE, FAILED, Job, Run
 
@@ -18,10 +20,11 @@ from snakemake_logger_plugin_study.run import DONE, FAILED, Job, Run
 MOST_FAILURES, FEW_FILES = 10, 3
 
 
-def closing_lines(run: Run, seconds: float, stopped: bool) -> list[str]:
+def closing_lines(run: Run, seconds: float, stopped: bool, arguments: Sequence[str]) -> list[str]:
     """Return the last lines of a run that took so many seconds.
 
     stopped : whether Snakemake ended with an error, as after a signal that came when the last job was done
+    arguments : of its command line
     """
     results, ended, done = Path(run.results), run.jobs_in(FAILED), run.jobs_in(DONE)
     missed = len(run.jobs) - len(ended) - len(done)
@@ -38,7 +41,7 @@ def closing_lines(run: Run, seconds: float, stopped: bool) -> list[str]:
         ends = ((len(failed), "failed"), (len(ended) - len(failed), "interrupted"), (missed, "did not run"))
         reasons = ", ".join(f"{format_count(count, 'job')} {what}" for count, what in ends if count)
         last = f"study {results.name}: stopped after {format_elapsed(seconds)}: {reasons or 'before its end'}"
-        return [last, *_failures(failed), made, *_remedies(failed)]
+        return [last, *_failures(failed), made, *_remedies(failed, arguments)]
     if run.touching:
         return [f"study {results.name}: its files are marked as up to date; bk check {results} says whether they are"]
     lines = [f"study {results.name}: done in {format_elapsed(seconds)} {run.capacity}", made]
@@ -66,12 +69,15 @@ def _failures(failed: Sequence[Job]) -> list[str]:
     return [*lines[:MOST_FAILURES], *[f"failed: {count} more"] * (count > 0)]
 
 
-def _remedies(failed: Sequence[Job]) -> list[str]:
+def _remedies(failed: Sequence[Job], arguments: Sequence[str]) -> list[str]:
     """Return how to continue; the command of the run helps only if it would not fail again."""
     if commands := remedies(path for job in failed for path in job.log):
         return [f"this command recreates the bad files and continues: {command}" for command in commands]
     if all(failure_reason(job.log) == SILENT for job in failed):
-        return ["Run the same command again to continue."]
+        if (words := without_force(arguments)) == [*arguments]:
+            return ["Run the same command again to continue."]
+        command = shlex.join(["snakemake", *words])
+        return [f"The same command would start all over; this one makes what is missing or out of date: {command}"]
     return ["Finished results are kept; the same command would fail again until the cause is removed."]
 
 

@@ -18,6 +18,31 @@ _RUNS_NONE = re.compile(
 )
 
 
+#: Options without a value that may share a dash, with -R as the last one: -kF, -kR agreement.
+_LETTERS = re.compile(r"-([ntkfFlSDpa]*)(R.*)?(.*)", re.DOTALL)
+
+
+def without_force(arguments: Sequence[str]) -> list[str]:
+    """Return a command line without -f, -F and -R, which make files again that are up to date."""
+    kept: list[str] = []
+    is_forced_target = False
+    for place, word in enumerate(arguments):
+        if word == "--":
+            return [*kept, *arguments[place:]]
+        if re.match(r"--force\w*(=|$)", word):
+            is_forced_target = word.startswith("--forcer") and "=" not in word
+        elif word.startswith("--"):
+            is_forced_target = False
+            kept.append(word)
+        elif letters := _LETTERS.fullmatch(word):
+            is_forced_target = letters[2] == "R"
+            rest = re.sub("[fF]", "", letters[1]) + letters[3]
+            kept += [f"-{rest}"] * bool(rest)
+        elif not is_forced_target:
+            kept.append(word)
+    return kept
+
+
 def runs_jobs(arguments: Sequence[str]) -> bool:
     """Return whether a command line, except for a dry run, runs jobs, rather than printing or marking something."""
     return not any(_RUNS_NONE.match(argument) for argument in arguments)

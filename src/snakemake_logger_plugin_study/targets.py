@@ -26,6 +26,9 @@ def target_error(plan: Plan) -> str:
         if rule and rule.has_wildcards() and target in settings.targets:
             remedy = f"name a file, or the rule {plan.stages[target]}, which makes all of them"
             return f"{target}: not a target, since it has several jobs: {remedy}"
+        # Snakemake takes a path for the name of a file as it is written.
+        if not rule and os.path.isabs(target) and path in files:
+            return f"{target}: not a target under this name; write {path}"
         if not rule and path not in files:
             return f"{target}: unknown target{_remedy(target, files, rules, plan.results)}"
     return ""

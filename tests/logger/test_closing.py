@@ -31,10 +31,10 @@ def summaries(tmp_path, monkeypatch):
         dataset.to_netcdf(FOLDER / RULES["mean_distance" if name == "status" else "agreement"])
 
 
-def lines(*jobs, wanted=tuple(RULES), seconds=1.0, stopped=False):
+def lines(*jobs, wanted=tuple(RULES), seconds=1.0, stopped=False, arguments=()):
     """Return the last lines of a run of these (name, state, output, log)."""
     begun = [Job(name, "", state=state, output=output, log=log) for name, state, output, log in jobs]
-    return closing_lines(Run("results/paper", dict(enumerate(begun)), wanted), seconds, stopped)
+    return closing_lines(Run("results/paper", dict(enumerate(begun)), wanted), seconds, stopped, arguments)
 
 
 def done(*paths):
@@ -105,3 +105,32 @@ def test_a_run_that_was_interrupted():
     assert lines(("x", RUNNING, ["x.nc"], [])) == [told, "made: nothing", AGAIN]
     # One that is stopped when its last job was done.
     assert lines(stopped=True) == ["study paper: stopped after 1 s: before its end", "made: nothing", AGAIN]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "command"),
+    [
+        ("-c2 -R agreement runs --configfile x.yaml", "-c2 --configfile x.yaml"),
+        ("-c2 -F", "-c2"),
+        ("-Fc2 summary", "-c2 summary"),
+        ("-kfp -c 2 results/paper/summary/runs.nc", "-kp -c 2 results/paper/summary/runs.nc"),
+        ("-c2 --forceall --force-use-threads -k", "-c2 --force-use-threads -k"),
+        ("--forcerun=runs -c2 all", "-c2 all"),
+        ("-c2 --forcerun runs agreement -- all -F", "-c2 -- all -F"),
+        ("-c2 -kRruns --until points -R runs", "-c2 -k --until points"),
+    ],
+)
+def test_an_interrupted_run_does_not_start_over(arguments, command):
+    """With -f, -F and -R the same command would make again what is finished."""
+    (*_, last) = lines(("x", RUNNING, ["x.nc"], []), arguments=arguments.split())
+    assert (
+        last
+        == f"The same command would start all over; this one makes what is missing or out of date: snakemake {command}"
+    )
+
+
+def test_a_command_that_continues_is_told_in_words():
+    for arguments in (["-c2", "summary"], ["-c2", "--configfile", "Force.yaml", "-n"], ["-c2", "--config", "study=-F"]):
+        assert lines(("x", RUNNING, ["x.nc"], []), arguments=arguments)[-1] == AGAIN
+    (*_, last) = lines(("x", RUNNING, ["x.nc"], []), arguments=["-F", "--configfile", "my study.yaml"])
+    assert last.endswith("snakemake --configfile 'my study.yaml'")

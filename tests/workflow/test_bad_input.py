@@ -171,6 +171,15 @@ def test_a_bad_command_line(tmp_path, case):
     check(run, tmp_path, ["study.yaml"], words)
 
 
+@pytest.mark.parametrize("option", [[], ["--until"]])
+def test_an_absolute_path_of_a_result(tmp_path, option):
+    """Snakemake compares names as they are written."""
+    study, name = Study(tmp_path, TINY), "results/tiny/summary/runs.nc"
+    run = study.run("-n", *option, str(tmp_path / name))
+    assert run.returncode == 1
+    assert f"{tmp_path / name}: not a target under this name; write {name}" in run.stdout + run.stderr
+
+
 def test_the_folder_of_the_workflow_is_not_the_folder_of_a_study(tmp_path, repository):
     """Snakemake would find the Snakefile there and plan a second study."""
     shutil.copytree(repository / "workflow", tmp_path / "workflow")

@@ -8,7 +8,6 @@ import subprocess
 import pytest
 
 from tests.workflow.conftest import LIMITS, TINY, Study, copied
-from tests.workflow.snakemake import run_snakemake
 
 
 def jobs(output):
@@ -58,41 +57,6 @@ def test_one_point_by_its_path_and_by_hand(finished, study):
     command[0] = os.path.join(os.path.dirname(study.command()[0]), "bk")
     subprocess.run(command, check=True, cwd=study.folder)
     assert (study.folder / target).read_bytes() == content
-
-
-MODULE = """
-configfile: "study.yaml"
-
-
-module stick_slip:
-    snakefile: "{repository}/workflow/Snakefile"
-    config: config["stick_slip"]
-
-
-use rule * from stick_slip as stick_slip_*
-
-
-rule mine:
-    input: "{point}"
-    output: "mine.txt"
-    shell: "ncdump -h {{input}} > {{output}} || touch {{output}}"
-"""
-
-
-@pytest.mark.slow
-def test_another_workflow_imports_the_study(tmp_path):
-    """Its config contains other keys too."""
-    study = Study(tmp_path, "mine: 3\nstick_slip:\n" + "".join(f"  {line}\n" for line in TINY.splitlines()))
-    point = "results/tiny/points/linearized/plus/a0.0800.nc"
-    (tmp_path / "Snakefile").write_text(MODULE.format(repository=study.repository, point=point))
-    command = study.command()[:2]
-    whole = run_snakemake([*command, "-n", "-p", "stick_slip_all"], tmp_path, study.environment())
-    assert whole.returncode == 0, whole.stderr
-    assert {"stick_slip_attractors_of_law", "stick_slip_report"} <= set(whole.stdout.split())
-    run = run_snakemake([*command, "mine"], tmp_path, study.environment())
-    assert run.returncode == 0, run.stderr
-    assert (tmp_path / point).is_file()
-    assert (tmp_path / "mine.txt").is_file()
 
 
 def test_stages_that_the_config_leaves_out(tmp_path):

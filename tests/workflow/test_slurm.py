@@ -75,7 +75,7 @@ class Run:
         self.log = study.folder / "log.txt"
         command = study.command(
             *("--workflow-profile", str(PROFILE), "--seconds-between-status-checks", "3", "--latency-wait", "5"),
-            *("--group-components", "points=8", "solver_points=6", "summaries=1", "figures=1", *arguments),
+            *("--group-components", "points=8", "solver_points=6", *arguments),
             cores=1,
         )
         environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}

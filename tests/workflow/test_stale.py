@@ -136,7 +136,7 @@ def test_the_reason_of_a_rerun_is_a_line(edited):
     """One for each change, and Snakemake's own reason is short enough to be read."""
     study = change_config(edited, {"basins.pixels": 9, "laws.nonlinear.law": "nonlinear"})
     lines = study.run("-n").stderr.splitlines()
-    assert "changed: basins.pixels: 8 → 9 (basin_tile, basins)" in lines
+    assert "changed: basins.pixels: 8 → 9 (basin_tile, basins, figure_basins and 1 more)" in lines
     (line,) = (line for line in lines if line.startswith("changed: laws.nonlinear.law: nothing → nonlinear ("))
     assert line.endswith(" more)")
     run = study.run("-n", "-p", "--quiet", "host")

@@ -72,8 +72,6 @@ rule basins:
         f"{RESULTS}/logs/basins.log",
     benchmark:
         f"{RESULTS}/benchmarks/basins.tsv"
-    group:
-        "summaries"
     params:
         config=uses(
             MODELS, PLANE, "basins.a", "basins.pixels", "basins.tiles", "basins.pairs", stage="basins", refusal=NO_MAPS

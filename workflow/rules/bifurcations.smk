@@ -67,8 +67,6 @@ rule edges:
         f"{RESULTS}/logs/edges.log",
     benchmark:
         f"{RESULTS}/benchmarks/edges.tsv"
-    group:
-        "summaries"
     params:
         config=uses(stage="edges", refusal=NO_EDGES),
         sources=sources("edges"),
@@ -90,8 +88,6 @@ rule bifurcations:
         f"{RESULTS}/logs/bifurcations.log",
     benchmark:
         f"{RESULTS}/benchmarks/bifurcations.tsv"
-    group:
-        "summaries"
     params:
         config=uses(stage="bifurcations"),
         sources=sources("bifurcations"),

@@ -35,8 +35,6 @@ rule catalogue:
         f"{RESULTS}/logs/catalogue.log",
     benchmark:
         f"{RESULTS}/benchmarks/catalogue.tsv"
-    group:
-        "summaries"
     resources:
         mem_mb=1000,
     params:

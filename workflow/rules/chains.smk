@@ -58,8 +58,6 @@ rule chains_summary:
         f"{RESULTS}/logs/chains.log",
     benchmark:
         f"{RESULTS}/benchmarks/chains.tsv"
-    group:
-        "summaries"
     params:
         config=uses(stage="chains", refusal=length_refusal(STUDY)),
         sources=sources("chains_summary"),

@@ -13,8 +13,6 @@ rule claims:
         f"{RESULTS}/logs/claims.log",
     benchmark:
         f"{RESULTS}/benchmarks/claims.tsv"
-    group:
-        "summaries"
     resources:
         mem_mb=1000,
     params:

@@ -33,7 +33,7 @@ def uses(*keys, stage, jobs=ONCE, over="a", refusal="", by_name=False):
         used = [name.format(**wildcards) for name in chain.from_iterable(lists)]
         return select(STUDY.config, STUDY.parameters, used)
 
-    of_job.stage, of_job.jobs, of_job.by_name = stage, jobs, by_name
+    of_job.study, of_job.stage, of_job.jobs, of_job.by_name = STUDY, stage, jobs, by_name
     of_job.refusal = STUDY.omission(stage, over) or refusal
     return of_job
 
@@ -46,7 +46,7 @@ def simulates(stage):
             raise ConfigError(f"{dict(wildcards)}: {of_job.refusal}")
         return STUDY.command(**wildcards)
 
-    of_job.stage, of_job.refusal = stage, STUDY.omission(stage, "any")
+    of_job.study, of_job.stage, of_job.refusal = STUDY, stage, STUDY.omission(stage, "any")
     return of_job
 
 
@@ -163,8 +163,8 @@ def files_in(*starts, suffix=""):
 
 
 def params_of(rule):
-    """Return the params function of a rule that says what its jobs use; None for rules of other workflows."""
-    return next((param for param in rule.params if hasattr(param, "refusal")), None)
+    """Return the params function of a rule that says what its jobs use; None for rules of other studies and workflows."""
+    return next((param for param in rule.params if getattr(param, "study", None) is STUDY), None)
 
 
 def add_files():

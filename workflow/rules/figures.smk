@@ -45,8 +45,6 @@ for figure in figure_descriptions():
         benchmark:
             f"{RESULTS}/benchmarks/figure_{figure.file}.tsv"
         priority: FIRST if figure.paper else 0
-        group:
-            "figures"
         params:
             config=uses(
                 *keys_of(figure),

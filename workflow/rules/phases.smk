@@ -37,8 +37,6 @@ rule phases:
         f"{RESULTS}/logs/phases.log",
     benchmark:
         f"{RESULTS}/benchmarks/phases.tsv"
-    group:
-        "summaries"
     params:
         config=uses(stage="phases", refusal=NO_PHASES),
         sources=sources("phases"),

@@ -17,8 +17,6 @@ rule proof:
         f"{RESULTS}/logs/proof.log",
     benchmark:
         f"{RESULTS}/benchmarks/proof.tsv"
-    group:
-        "summaries"
     params:
         config=uses([f"laws.{law}" for law in STUDY.proved_laws], MODELS[1:], stage="proof", refusal=NO_PROOF),
         sources=sources("proof"),

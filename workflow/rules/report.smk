@@ -15,8 +15,6 @@ rule report:
         f"{RESULTS}/logs/report.log",
     benchmark:
         f"{RESULTS}/benchmarks/report.tsv"
-    group:
-        "figures"
     resources:
         mem_mb=600,
     params:

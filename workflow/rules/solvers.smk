@@ -34,8 +34,6 @@ rule solvers:
         f"{RESULTS}/logs/solvers.log",
     benchmark:
         f"{RESULTS}/benchmarks/solvers.tsv"
-    group:
-        "summaries"
     params:
         config=uses(run_keys(STUDY), "initial", "solvers.a", "solvers.step", stage="solvers"),
         sources=sources("solvers"),

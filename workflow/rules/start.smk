@@ -3,13 +3,17 @@
 
 
 def record_study():
-    """Record the study, its files and its command in the results folder."""
+    """Record the study, its files and its command in the results folder.
+
+    The record is no output of a rule. If it were an input of the jobs, even an `ancient` one, Snakemake 9.27 would not
+    look at the params of any job in the run that renews it, and would repeat all of them where it is missing.
+    """
     files = {inside(file): inside(log) for file, (_, log) in FILES.items()}
     write_study_record(
         RESULTS,
         STUDY.config,
         STUDY.parameters,
-        CONFIG_FILE,
+        OWNER,
         WRITTEN,
         shlex.join(ARGUMENTS),
         files,
@@ -104,5 +108,6 @@ if workflow.is_main_process:
         print_remarks()
 
 
+# Snakemake calls this for the main Snakefile; a workflow that imports the study calls it itself.
 onstart:
     prepare_results()

@@ -62,6 +62,8 @@ ROOT = Path(f"{workflow.current_basedir}").resolve().parents[1]
 SNAKEFILES = [ROOT / "Snakefile", ROOT / "workflow/Snakefile"]
 IMPORTED = Path(workflow.main_snakefile).resolve() not in SNAKEFILES
 CONFIG_FILE = [*workflow.configfiles, workflow.main_snakefile][0]
+# The file to which the results belong.
+OWNER = workflow.main_snakefile if IMPORTED else CONFIG_FILE
 # The linear-algebra library would start a thread for every core, and keep it busy.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Jobs draw into files. The backend that a notebook names may not be installed here, and matplotlib would not load.
@@ -73,7 +75,8 @@ if Path.cwd() == ROOT / "workflow":
     sys.exit(f"no study is run in the folder workflow: cd {shlex.quote(str(ROOT))}")
 
 try:
-    check_one_config(workflow.configfiles)
+    # Another workflow may have several config files.
+    check_one_config([] if IMPORTED else workflow.configfiles)
     # Snakemake has read --config and the file as well, but accepts values that are refused here.
     READ = workflow.config_settings.config
     OVERRIDES = of_command_line(workflow.config_settings.config_args or [], READ)
@@ -92,16 +95,23 @@ try:
     # Snakemake would report these errors with a traceback. Results may be read-only as long as no job runs.
     check_folder(os.path.abspath(".snakemake"))
     nearest_folder(RESULTS)
-    check_owner(RESULTS, CONFIG_FILE, WRITTEN)
+    check_owner(RESULTS, OWNER, WRITTEN)
 except (ValueError, OSError) as error:
     sys.exit(f"{error}")
 
-# The arguments of `snakemake` for this study: of its config, and with the Snakefile from another folder.
-OTHER_CONFIG = not IMPORTED and Path(CONFIG_FILE).resolve() != ROOT / "config/paper.yaml"
-CONFIG_ARGUMENTS = config_arguments(CONFIG_FILE if OTHER_CONFIG else None, OVERRIDES)
+# The arguments of `snakemake` for this study: of its config, and with the Snakefile of another workflow or folder.
+if IMPORTED:
+    SETTINGS = workflow.config_settings
+    CONFIG_ARGUMENTS = [
+        *(["--configfile", *map(os.path.relpath, SETTINGS.configfiles)] if SETTINGS.configfiles else []),
+        *(["--config", *SETTINGS.config_args] if SETTINGS.config_args else []),
+    ]
+else:
+    OTHER_CONFIG = Path(CONFIG_FILE).resolve() != ROOT / "config/paper.yaml"
+    CONFIG_ARGUMENTS = config_arguments(CONFIG_FILE if OTHER_CONFIG else None, OVERRIDES)
 OTHER_SNAKEFILE = workflow.main_snakefile if IMPORTED else SNAKEFILES[0]
 ARGUMENTS = [
-    *(["-s", os.path.relpath(OTHER_SNAKEFILE)] if ROOT != Path.cwd() else []),
+    *(["-s", os.path.relpath(OTHER_SNAKEFILE)] if IMPORTED or ROOT != Path.cwd() else []),
     *CONFIG_ARGUMENTS,
 ]
 

@@ -19,8 +19,6 @@ rule runs:
     benchmark:
         f"{RESULTS}/benchmarks/runs.tsv"
     priority: FIRST
-    group:
-        "summaries"
     resources:
         runtime=30,
     params:
@@ -43,8 +41,6 @@ rule mean_distance:
     benchmark:
         f"{RESULTS}/benchmarks/mean_distance.tsv"
     priority: FIRST
-    group:
-        "summaries"
     resources:
         runtime=30,
     params:
@@ -67,8 +63,6 @@ rule bifurcation_diagram:
     benchmark:
         f"{RESULTS}/benchmarks/bifurcation_diagram.tsv"
     priority: FIRST
-    group:
-        "summaries"
     resources:
         mem_mb=1000,
         runtime=30,
@@ -91,8 +85,6 @@ rule lyapunov:
         f"{RESULTS}/logs/lyapunov.log",
     benchmark:
         f"{RESULTS}/benchmarks/lyapunov.tsv"
-    group:
-        "summaries"
     resources:
         runtime=30,
     params:
@@ -114,8 +106,6 @@ rule stick_slip:
         f"{RESULTS}/logs/stick_slip.log",
     benchmark:
         f"{RESULTS}/benchmarks/stick_slip.tsv"
-    group:
-        "summaries"
     resources:
         runtime=30,
     params:
@@ -142,8 +132,6 @@ rule agreement:
         f"{RESULTS}/logs/agreement.log",
     benchmark:
         f"{RESULTS}/benchmarks/agreement.tsv"
-    group:
-        "summaries"
     resources:
         runtime=30,
     params:
@@ -164,8 +152,6 @@ rule orbits:
     benchmark:
         f"{RESULTS}/benchmarks/orbits.tsv"
     priority: FIRST
-    group:
-        "summaries"
     resources:
         runtime=30,
     params:
@@ -185,8 +171,6 @@ rule equilibrium:
         f"{RESULTS}/logs/equilibrium.log",
     benchmark:
         f"{RESULTS}/benchmarks/equilibrium.tsv"
-    group:
-        "summaries"
     resources:
         runtime=30,
     params:

@@ -10,30 +10,34 @@ from pathlib import Path
 import netCDF4
 
 from burridge_knopoff.provenance.keys import MISSING, difference, value_of
-from burridge_knopoff.provenance.origin import Origin
+from burridge_knopoff.provenance.origin import Origin, embedded_origin
 from burridge_knopoff.study.study import Study
 
 
 def changes(study: Study, results: Path, sources: Mapping[str, str]) -> dict[str, list[str]]:
     """Return {change: rules that it concerns}, such as {`attractors.samples: 100 → 120`: [attractors_of_law, …]}.
 
-    The changes are those since the netCDF files of the study were made; corrupt files count as new.
+    The changes are those since the files of the study that have their origin in them were made; corrupt files count as
+    new.
 
     sources : {file of the study: its current sources, see `provenance.origin`}
     """
     rules: dict[str, list[str]] = defaultdict(list)
     for name, current in sources.items():
-        if name.endswith(".nc") and (origin := _origin(results / name)):
+        if origin := _origin(results / name):
             for change in _changes(origin, study, current):
                 rules[change] += [origin.rule] * (origin.rule not in rules[change])
     return rules
 
 
 def _origin(path: Path) -> Origin | None:
-    """Return the origin of a netCDF file without a check of its content; None if it cannot be read."""
-    # Whatever netCDF4 makes of a missing file or of overwritten bytes.
-    with suppress(OSError, RuntimeError, TypeError, ValueError), netCDF4.Dataset(path) as dataset:
-        return Origin.from_attributes(vars(dataset))
+    """Return the origin of a file without a check of its content; None if it has none, or none that can be read."""
+    # Whatever netCDF4 and others make of a missing file or of overwritten bytes.
+    with suppress(OSError, RuntimeError, SyntaxError, TypeError, ValueError, AttributeError):
+        if path.suffix != ".nc":
+            return Origin(**embedded_origin(path))
+        with netCDF4.Dataset(path) as dataset:
+            return Origin.from_attributes(vars(dataset))
     return None
 
 

@@ -221,7 +221,12 @@ def _own_finding(path: Path, origin: Origin | None) -> Finding | None:
 def config_change(results: Path, record: dict[str, Any]) -> Finding | None:
     """Return a finding if the config file differs from that of the last run, or a note if it does not exist."""
     # The record contains the path of the config file relative to the folder of the run.
-    file, path = Path(record["config_file"]), root_of(results) / record["config_file"]
+    root = root_of(results)
+    file, path = Path(record["config_file"]), root / record["config_file"]
+    # A workflow that imports the study passes its config on; its Snakefile is on record.
+    option, snakefile, *_ = [*shlex.split(record["arguments"]), "", ""]
+    if option == "-s" and (root / snakefile).resolve() == path.resolve():
+        return Finding("note", file, "imports the study; the config of the last run is checked")
     if not path.exists():
         return Finding("note", file, "does not exist; the config of the last run is checked")
     try:

@@ -79,13 +79,13 @@ def read_origin(path: Path) -> tuple[Origin | None, str]:
             return Origin.from_attributes(vars(dataset)), dataset.checksum
     checksum = check_whole(path)
     try:
-        return Origin(**_embedded(path)), checksum
+        return Origin(**embedded_origin(path)), checksum
     # None, or none that can be read.
     except (OSError, ValueError, SyntaxError, TypeError, AttributeError):
         return None, checksum
 
 
-def _embedded(path: Path) -> dict[str, Any]:
+def embedded_origin(path: Path) -> dict[str, Any]:
     """Return the origin in a text or a picture as a mapping; empty if it has none."""
     match path.suffix:
         case ".png":

@@ -89,7 +89,8 @@ class Study:
     @property
     def shown_point(self) -> str:
         """Name of the value of a in the figures of single runs."""
-        return min(self.grid, key=lambda name: abs(self.grid[name] - self.shown_a))
+        shown = self.shown_a
+        return min(self.grid, key=lambda name: abs(self.grid[name] - shown))
 
     @property
     def shown_a(self) -> float:
@@ -307,5 +308,6 @@ def run_files(study: Study) -> dict[str, dict[str, str]]:
 
 def solver_points(study: Study) -> list[dict[str, str]]:
     """Return the wildcards of every run that repeats a point with another solver."""
-    points = [point for point in all_points(study) if point["a"] in study.compared_values]
+    compared = study.compared_values
+    points = [point for point in all_points(study) if point["a"] in compared]
     return [{**point, "solver": solver} for point in points for solver in study.other_solvers(point["law"])]
