@@ -74,7 +74,8 @@ def delete_unused(folder: Path, asked: Collection[Path]) -> None:
     """
     result = f"*/{32 * _DIGIT}"
     for path in (*folder.glob(result), *folder.parent.glob(f"{16 * _DIGIT}/{result}")):
-        if path not in asked:
+        # The target of a link does not belong to the cache.
+        if path not in asked and not path.parent.is_symlink():
             path.unlink(missing_ok=True)
 
 
