@@ -308,12 +308,13 @@ def test_a_run_that_ends_early_is_reported(tmp_path):
         assert dataset["mean_distance"][...] != dataset["mean_distance"][...]
 
 
-def test_a_link_is_kept_and_its_target_is_written(tmp_path):
+def test_a_link_is_replaced_and_its_target_is_kept(tmp_path):
     (tmp_path / "target.nc").write_text("old")
     (tmp_path / "link.nc").symlink_to("target.nc")
     assert main([*RUN, "--out", str(tmp_path / "link.nc")]) == 0
-    assert (tmp_path / "link.nc").is_symlink()
-    assert (tmp_path / "target.nc").stat().st_size > 10_000
+    assert not (tmp_path / "link.nc").is_symlink()
+    assert (tmp_path / "link.nc").stat().st_size > 10_000
+    assert (tmp_path / "target.nc").read_text() == "old"
 
 
 @pytest.mark.slow
@@ -368,5 +369,5 @@ def test_start_up_imports_no_heavy_library(tmp_path):
         "print([name for name in sys.modules if name.startswith((*heavy, 'burridge_knopoff.study.'))])"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    modules = ["burridge_knopoff.cli.options", "burridge_knopoff.cli.simulate"]
+    modules = [f"burridge_knopoff.cli.{name}" for name in ("options", "output", "simulate")]
     assert run.stdout.splitlines()[1:] == ["[]", f"{modules}", "['burridge_knopoff.study.formatting']"]

@@ -15,7 +15,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 import xarray
 
 from burridge_knopoff.dataset.summary import open_summary, write_summary
-from burridge_knopoff.provenance.files import reserve_room, write_text
+from burridge_knopoff.provenance.files import remove_links, reserve_room, write_text
 from burridge_knopoff.provenance.keys import nested
 from burridge_knopoff.provenance.origin import OWN_ATTRIBUTES, Origin, check_origin, other_params, with_origin
 from burridge_knopoff.provenance.record import NAME, read_study_record, study_folder
@@ -39,6 +39,7 @@ class Job:
     """
 
     def __init__(self, snakemake: Any) -> None:
+        remove_links(snakemake.log[0])
         sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
         reserve_room(sys.stderr)
         logging.basicConfig(format="%(message)s")

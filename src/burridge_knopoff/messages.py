@@ -1,8 +1,10 @@
-"""The words of messages: a refused value, the closest known name, and values as texts of one line."""
+"""The words of messages: a refused value, the closest known name, values as texts of one line, and commands."""
 
 from __future__ import annotations
 
+import os
 import re
+import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
 from typing import Any
@@ -52,6 +54,27 @@ def cut(text: str, longest: int = LONGEST) -> str:
 def escape_unprintable(text: str) -> str:
     """Return a text with escapes for unprintable characters, such as a line break in the name of a file."""
     return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text)
+
+
+def command(*words: str | os.PathLike[str]) -> str:
+    """Return a command for a shell, quoted word by word; unprintable characters as in $'two\\x0alines'.
+
+    Every command that is printed is made here, since its words may come from files.
+    """
+    return " ".join(_quote(os.fspath(word)) for word in words)
+
+
+def _quote(word: str) -> str:
+    if word.isprintable():
+        return shlex.quote(word)
+    escapes = {"\\": "\\\\", "'": "\\'"}
+    letters = (
+        escapes.get(letter, letter)
+        if letter.isprintable()
+        else "".join(f"\\x{byte:02x}" for byte in letter.encode(errors="surrogateescape"))
+        for letter in word
+    )
+    return f"$'{''.join(letters)}'"
 
 
 def format_value(value: Any) -> str:

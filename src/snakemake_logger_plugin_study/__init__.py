@@ -21,6 +21,7 @@ from snakemake.settings.enums import Quietness
 from snakemake_interface_logger_plugins.base import LogHandlerBase
 from snakemake_interface_logger_plugins.common import LogEvent
 
+from burridge_knopoff.messages import escape_unprintable
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.job_log import SILENT, failure_line, failure_reason, is_interrupted
 from burridge_knopoff.study.yaml_file import ConfigError
@@ -48,7 +49,7 @@ class LogHandler(LogHandlerBase):
         try:
             check_command_line(sys.argv[1:])
         except ConfigError as error:
-            sys.exit(f"{error}")
+            sys.exit(escape_unprintable(f"{error}"))
         settings = self.common_settings
         stream = sys.stdout if settings.stdout else sys.stderr
         # The terminal wraps long lines, so that a command in a message can be copied.
@@ -133,7 +134,7 @@ class LogHandler(LogHandlerBase):
 
     def _write(self, text: str) -> None:
         if text and (Quietness.ALL not in self._quiet or self.common_settings.dryrun):
-            self._console.print(Text(text))
+            self._console.print(Text("\n".join(map(escape_unprintable, text.expandtabs().split("\n")))))
 
     def close(self) -> None:
         """Remove the picture and write the last lines; Snakemake calls this at the end, also after Ctrl-C."""

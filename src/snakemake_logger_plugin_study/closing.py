@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
-import shlex
+import os
 from collections import Counter, defaultdict
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
 from burridge_knopoff.dataset.decoding import decode_flags
+from burridge_knopoff.messages import command
+from burridge_knopoff.provenance.record import NAME, remake_command
 from burridge_knopoff.study.formatting import format_count
-from burridge_knopoff.study.job_log import SILENT, failure_line, failure_reason, is_interrupted, remedies
+from burridge_knopoff.study.job_log import SILENT, bad_files, failure_line, failure_reason, is_interrupted
 from snakemake_logger_plugin_study.command_line import without_force
 from snakemake_logger_plugin_study.display import format_elapsed
 from snakemake_logger_plugin_study.run import DONE, FAILED, Job, Run
@@ -41,9 +43,10 @@ def closing_lines(run: Run, seconds: float, stopped: bool, arguments: Sequence[s
         ends = ((len(failed), "failed"), (len(ended) - len(failed), "interrupted"), (missed, "did not run"))
         reasons = ", ".join(f"{format_count(count, 'job')} {what}" for count, what in ends if count)
         last = f"study {results.name}: stopped after {format_elapsed(seconds)}: {reasons or 'before its end'}"
-        return [last, *_failures(failed), made, *_remedies(failed, arguments)]
+        return [last, *_failures(failed), made, *_remedies(results, failed, arguments)]
     if run.touching:
-        return [f"study {results.name}: its files are marked as up to date; bk check {results} says whether they are"]
+        check = command("bk", "check", results)
+        return [f"study {results.name}: its files are marked as up to date; {check} says whether they are"]
     lines = [f"study {results.name}: done in {format_elapsed(seconds)} {run.capacity}", made]
     # Older summaries say nothing about the run.
     for rule, (name, read) in _READERS.items():
@@ -69,16 +72,23 @@ def _failures(failed: Sequence[Job]) -> list[str]:
     return [*lines[:MOST_FAILURES], *[f"failed: {count} more"] * (count > 0)]
 
 
-def _remedies(failed: Sequence[Job], arguments: Sequence[str]) -> list[str]:
+def _remedies(results: Path, failed: Sequence[Job], arguments: Sequence[str]) -> list[str]:
     """Return how to continue; the command of the run helps only if it would not fail again."""
-    if commands := remedies(path for job in failed for path in job.log):
-        return [f"this command recreates the bad files and continues: {command}" for command in commands]
+    # A log may be that of whoever sent the results.
+    files = [file for file in bad_files(path for job in failed for path in job.log) if _is_in(results, file)]
+    if files:
+        return [f"this command recreates the bad files and continues: {remake_command(results / NAME, *files)}"]
     if all(failure_reason(job.log) == SILENT for job in failed):
         if (words := without_force(arguments)) == [*arguments]:
             return ["Run the same command again to continue."]
-        command = shlex.join(["snakemake", *words])
-        return [f"The same command would start all over; this one makes what is missing or out of date: {command}"]
+        rest = command("snakemake", *words)
+        return [f"The same command would start all over; this one makes what is missing or out of date: {rest}"]
     return ["Finished results are kept; the same command would fail again until the cause is removed."]
+
+
+def _is_in(results: Path, file: str) -> bool:
+    """Return whether a file is in the results, by its path from the folder in which Snakemake runs."""
+    return Path(os.path.normpath(file)).is_relative_to(results)
 
 
 def _verdicts(path: Path) -> str:

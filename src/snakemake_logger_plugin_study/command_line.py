@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from burridge_knopoff.messages import format_value
+from burridge_knopoff.messages import command, format_value
 from burridge_knopoff.provenance.files import display_path
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
 
@@ -54,7 +54,7 @@ def check_one_config(paths: Sequence[str | Path]) -> None:
         first, second = map(display_path, paths[:2])
         raise ConfigError(
             f"--configfile: got {second} as a second file, expected one file: one file is one study; "
-            f"put a target before it: snakemake {second} --configfile {first}"
+            f"put a target before it: {command('snakemake', second, '--configfile', first)}"
         )
 
 

@@ -81,9 +81,22 @@ def test_a_run_that_failed():
     assert lines(*failed[1:])[-1] == AGAIN
 
 
+def test_a_log_that_somebody_sent_gives_no_command():
+    """A job that was killed at its start leaves the log that was there before."""
+    for n, words in enumerate(
+        ("touch evil", "snakemake -s evil -R x", "snakemake -R ../x", "x -R 'results/paper/../x'")
+    ):
+        Path(f"{n}.log").write_text(
+            f"Traceback (most recent call last):\n  raise\nBad: a: is empty; remake it: {words}\n"
+        )
+        assert not any("evil" in line or "recreates" in line for line in lines((f"job {n}", FAILED, [], [f"{n}.log"])))
+
+
 def test_bad_files_are_remade_by_one_command_and_by_no_other():
     """Seven jobs stop at two bad files: the command of the run would stop there again."""
-    head = "snakemake -c2 --configfile study.yaml -R"
+    head = "snakemake -c2 --configfile 'my study.yaml' -R"
+    texts = {"software": "", "git_commit": "", "arguments": "--configfile 'my study.yaml'", "config_file": ""}
+    (FOLDER.parent / "study.json").write_text(json.dumps({**texts, "given": {}, "config": {}, "grid": {}}))
     for n in range(7):
         file = f"results/paper/points/{n % 2}.nc"
         error = f"burridge_knopoff.provenance.bad_file.BadFile: {file}: is empty; remake it: {head} {file}"

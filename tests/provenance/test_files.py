@@ -18,6 +18,7 @@ from burridge_knopoff.provenance.files import (
     check_target,
     display_path,
     nearest_folder,
+    remove_links,
     reserve_room,
     write_text,
     write_whole,
@@ -142,6 +143,49 @@ def test_folders_that_cannot_be_written_to(tmp_path):
     check_folder(tmp_path / "not" / "there", inside=True)
     with pytest.raises(OSError, match=r"^/proc/self is a folder that cannot be written to: "):
         check_folder("/proc/self/results")
+
+
+def test_a_link_is_replaced(tmp_path):
+    """The file to which it points, wherever that is, is neither written nor made."""
+    (tmp_path / "elsewhere").mkdir()
+    target = tmp_path / "elsewhere/mine.txt"
+    target.write_text("mine")
+    for name in (target, "elsewhere/mine.txt", "elsewhere/none.txt", "nowhere/none.txt", "link.txt"):
+        (tmp_path / "link.txt").unlink(missing_ok=True)
+        (tmp_path / "link.txt").symlink_to(name)
+        write_text(tmp_path / "link.txt", "whole")
+        assert not (tmp_path / "link.txt").is_symlink()
+        assert (tmp_path / "link.txt").read_text() == "whole"
+        assert target.read_text() == "mine"
+    assert {path.name for path in tmp_path.rglob("*")} == {"elsewhere", "mine.txt", "link.txt"}
+
+
+@pytest.mark.parametrize("target", ["/dev/null", "folder"])
+def test_a_link_to_anything_but_a_file_is_refused(tmp_path, target):
+    """Otherwise the link /dev/stdout of the system could be replaced."""
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "link").symlink_to(target)
+    with pytest.raises(OSError, match="link: cannot be written: it is "):
+        write_text(tmp_path / "link", "whole")
+    assert (tmp_path / "link").is_symlink()
+
+
+def test_a_file_in_a_linked_folder_is_written_there(tmp_path):
+    """Users keep results on another disk."""
+    (tmp_path / "disk").mkdir()
+    (tmp_path / "results").symlink_to("disk")
+    write_text(tmp_path / "results/a.txt", "whole")
+    assert (tmp_path / "disk/a.txt").read_text() == "whole"
+    assert (tmp_path / "results").is_symlink()
+
+
+def test_links_are_removed_and_files_are_kept(tmp_path):
+    for name in ("file", "target"):
+        (tmp_path / name).write_text(name)
+    (tmp_path / "link").symlink_to("target")
+    (tmp_path / "broken").symlink_to("nowhere")
+    remove_links(*(tmp_path / name for name in ("file", "link", "broken", "none")))
+    assert {path.name for path in tmp_path.iterdir()} == {"file", "target"}
 
 
 def test_display_path(tmp_path, monkeypatch):

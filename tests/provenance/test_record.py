@@ -1,19 +1,21 @@
 """The study and the commit of a folder of results, also in a worktree and with packed references."""
 
 import json
+import os
+import shlex
 import subprocess
 
 import pytest
 
 from burridge_knopoff.provenance import record
-from burridge_knopoff.provenance.record import check_owner
+from burridge_knopoff.provenance.record import check_owner, read_study_record, remake_command
 
 GIVEN = {"study": "mine", "a": [0.1], "v": 0.1}
 
 
-def recorded(folder):
+def recorded(folder, **keys):
     texts = {"software": "", "git_commit": "", "arguments": "", "config_file": "mine.yaml"}
-    (folder / "study.json").write_text(json.dumps({**texts, "given": GIVEN, "config": {}, "grid": {}}))
+    (folder / "study.json").write_text(json.dumps({**texts, "given": GIVEN, "config": {}, "grid": {}, **keys}))
 
 
 @pytest.mark.parametrize(
@@ -42,6 +44,84 @@ def test_another_config_of_the_same_name_is_refused(tmp_path, monkeypatch):
     assert f"remove {tmp_path / 'study.json'}" in message
     (tmp_path / "study.json").unlink()
     check_owner(tmp_path, "other.yaml", {})
+
+
+WORDS = [
+    [],
+    ["--configfile", "study.yaml"],
+    ["-s", "../other/Snakefile", "--configfile", "my study; touch evil.yaml", "--config", "a=[0.1]", "v=$(touch evil)"],
+    ["--config", "study=`touch evil`", "initial={minus: {}}"],
+]
+
+
+@pytest.mark.parametrize("words", WORDS)
+def test_the_recorded_words_are_those_of_the_command(tmp_path, monkeypatch, words):
+    """A shell passes them on as they are, and runs nothing."""
+    results = tmp_path / "results/mine"
+    results.mkdir(parents=True)
+    monkeypatch.chdir(tmp_path)
+    recorded(results, arguments=shlex.join(words))
+    assert read_study_record(results)["arguments"] == words
+    line = remake_command(results / "a.nc")
+    assert shell(line, tmp_path) == ["-c2", *words, "-R", "results/mine/a.nc"]
+    line = remake_command(results / "study.json", listed=["echo", "a.nc", "b.nc"])
+    assert shell(line, tmp_path) == ["-c2", *words, "-R", "a.nc", "b.nc"]
+
+
+def shell(line, folder):
+    """Return the arguments that a shell gives `snakemake`; nothing else is run."""
+    done = subprocess.run(
+        ["bash", "-c", f"snakemake() {{ printf '%s\\0' \"$@\"; }}; {line}"], cwd=folder, capture_output=True, check=True
+    )
+    assert not (folder / "evil").exists()
+    return [os.fsdecode(word) for word in done.stdout.split(b"\0")[:-1]]
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        "; touch evil ;",
+        "$(touch evil)",
+        "--configfile study.yaml ; touch evil",
+        "--configfile study.yaml --executor touch",
+        "--configfile --wrapper-prefix=evil",
+        "--configfile",
+        "-s results/mine/evil.smk",
+        "-s ./results/../results/mine/evil.smk",
+        "-s --snakefile=evil",
+        "--snakefile evil",
+        "--config a=1 --touch",
+        "--config touch",
+        "'unbalanced",
+        "-F",
+    ],
+)
+def test_a_record_with_other_arguments_than_a_run_has_is_refused(tmp_path, monkeypatch, arguments):
+    results = tmp_path / "results/mine"
+    results.mkdir(parents=True)
+    monkeypatch.chdir(tmp_path)
+    recorded(results, arguments=arguments)
+    with pytest.raises(ValueError, match=r"study\.json: not a valid record; run snakemake again to rewrite it$"):
+        read_study_record(results)
+    assert remake_command(results / "a.nc") == "snakemake -c2 -R results/mine/a.nc"
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["../a.nc", "/etc/passwd", "summary/../../a.nc", "-s", "a -s evil", "a;b", "a\nb", "\x1b", "--touch", "", "a//b"],
+)
+@pytest.mark.parametrize("place", ["file", "log"])
+def test_a_record_with_names_that_lead_elsewhere_is_refused(tmp_path, name, place):
+    recorded(tmp_path, files={name: "logs/a.log"} if place == "file" else {"a.nc": name})
+    with pytest.raises(ValueError, match="not a valid record"):
+        read_study_record(tmp_path)
+
+
+def test_the_owner_of_a_folder_is_named_without_control_characters(tmp_path):
+    recorded(tmp_path, config_file="mine\x1b[2J\u202e.yaml\nbk: all is well")
+    with pytest.raises(ValueError, match="results of mine") as error:
+        check_owner(tmp_path, "other.yaml", {"study": "mine"})
+    assert str(error.value).isprintable()
 
 
 def test_a_corrupt_record_refuses_no_config(tmp_path):

@@ -29,7 +29,11 @@ def test_pictures_keep_their_size_and_their_colours(tmp_path):
     assert "W'" in picture.caption
 
 
-def test_a_picture_that_cannot_be_read_is_named(tmp_path):
-    (tmp_path / "noise.png").write_bytes(b"no picture")
+@pytest.mark.parametrize(
+    "content", [b"no picture", b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 9 9\n%%EndComments\nshowpage\n%%EOF\n"]
+)
+def test_a_picture_that_cannot_be_read_is_named(tmp_path, content):
+    """For the second, another program would be started."""
+    (tmp_path / "noise.png").write_bytes(content)
     with pytest.raises(ValueError, match=r"noise\.png: is not a readable picture"):
         read_picture(tmp_path / "noise.png")

@@ -5,7 +5,7 @@ import shutil
 import pytest
 
 from burridge_knopoff.running.processes import parallel_map
-from burridge_knopoff.study.job_log import SILENT, failure_line, logged_error, progress_of, remedies
+from burridge_knopoff.study.job_log import SILENT, bad_files, failure_line, logged_error, progress_of
 
 TRACEBACK = """Traceback (most recent call last):
   File "a.py", line 3, in <module>
@@ -39,10 +39,15 @@ def test_logged_error(tmp_path, text, words):
 
 def test_the_command_that_recreates_a_bad_file_is_not_part_of_the_reason(tmp_path):
     """Seven jobs may stop at one file: each reason is listed, the command only once."""
+    # The reason may quote what somebody wrote into the file.
     (tmp_path / "log").write_text(TRACEBACK + "ValueError: a.nc: is empty; remake it: snakemake -c2 -R a.nc\n")
+    reason = "got '; remake it: touch evil -R b.nc', expected c.nc"
+    (tmp_path / "quoted").write_text(TRACEBACK + f"ValueError: d.nc: {reason}; remake it: snakemake -c2 -R d.nc\n")
+    (tmp_path / "cut").write_text(TRACEBACK + "ValueError: d.nc: is empty; remake it: snakemake -c2 -R 'd.nc\n")
     (tmp_path / "other").write_text(TRACEBACK + "ValueError: wrong\n")
     assert logged_error(tmp_path / "log") == "ValueError: a.nc: is empty"
-    assert remedies([tmp_path / "log"] * 7 + [tmp_path / "other"]) == ["snakemake -c2 -R a.nc"]
+    logs = [tmp_path / name for name in ("log", "quoted", "cut", "other", "log")]
+    assert bad_files(logs) == ["a.nc", "d.nc"]
 
 
 def test_the_progress_of_a_long_job_is_not_the_reason_of_its_failure(tmp_path, caplog):

@@ -143,3 +143,22 @@ def test_touch_makes_no_file_and_says_so(tmp_path, limited):
     study.ok("-R", "results/limits/figures/equilibrium.png")
     assert picture.read_bytes() == (limited.folder / "results/limits/figures/equilibrium.png").read_bytes()
     assert (results / "report.html").is_file()
+
+
+def test_links_in_a_folder_that_somebody_sent_are_replaced(study, tmp_path):
+    """The record, and the point, log and benchmark of a job: nothing is written where they point."""
+    mine = tmp_path / "mine"
+    mine.mkdir()
+    results = study.folder / "results/tiny"
+    name = "linearized/plus/a0.0800"
+    links = ["study.json", f"points/{name}.nc", f"logs/simulate/{name}.log", f"benchmarks/simulate/{name}.tsv"]
+    for number, link in enumerate(links):
+        (mine / f"{number}").write_text("mine")
+        (results / link).parent.mkdir(parents=True, exist_ok=True)
+        (results / link).symlink_to(mine / f"{number}")
+    study.ok(f"results/tiny/points/{name}.nc", "-f")
+    assert {path.read_text() for path in mine.iterdir()} == {"mine"}
+    assert len([*mine.iterdir()]) == len(links)
+    assert [link for link in links if (results / link).is_symlink()] == []
+    # A log without a word stays a file, as in other runs.
+    assert all((results / link).is_file() for link in links)

@@ -27,7 +27,7 @@ def inside(path):
 
 def write_line(text):
     """Write a line to standard error, in one piece: Snakemake writes to it from another thread."""
-    sys.stderr.write(f"{text}\n")
+    sys.stderr.write(f"{escape_unprintable(text)}\n")
 
 
 def print_remarks():
@@ -67,7 +67,10 @@ def prepare_results():
         check_folder(RESULTS, inside=True)
         record_study()
     except OSError as error:
-        sys.exit(f"{error}")
+        sys.exit(escape_unprintable(f"{error}"))
+    # Shells and Snakemake open these files as they are.
+    for job in workflow.dag.needrun_jobs():
+        remove_links(*job.log, *([job.benchmark] if job.benchmark else []))
     # With a limit on the rate of jobs Snakemake starts a timer with every job, and each of them checks all ready jobs
     # every second until the end: after 1,400 jobs, 1,400 threads take two thirds of a core (its issue 3804). Programs
     # that submit jobs to a cluster need the limit.

@@ -23,11 +23,13 @@ from burridge_knopoff.check.changes import changes
 from burridge_knopoff.check.study import is_locked
 from burridge_knopoff.claims.paper import CLAIMS, READS
 from burridge_knopoff.figures.description import figure_descriptions
+from burridge_knopoff.messages import command, escape_unprintable
 from burridge_knopoff.proof.scope import LARGEST_V, NONLINEAR_V
 from burridge_knopoff.provenance.files import (
     check_folder,
     display_path,
     nearest_folder,
+    remove_links,
 )
 from burridge_knopoff.provenance.keys import select
 from burridge_knopoff.provenance.record import check_owner, write_study_record
@@ -72,7 +74,7 @@ os.environ.pop("MPLBACKEND", None)
 # Results are written to the current folder. In this one Snakemake finds the second Snakefile, and would begin another
 # study.
 if Path.cwd() == ROOT / "workflow":
-    sys.exit(f"no study is run in the folder workflow: cd {shlex.quote(str(ROOT))}")
+    sys.exit(f"no study is run in the folder workflow: {command('cd', ROOT)}")
 
 try:
     # Another workflow may have several config files.
@@ -97,7 +99,7 @@ try:
     nearest_folder(RESULTS)
     check_owner(RESULTS, OWNER, WRITTEN)
 except (ValueError, OSError) as error:
-    sys.exit(f"{error}")
+    sys.exit(escape_unprintable(f"{error}"))
 
 # The arguments of `snakemake` for this study: of its config, and with the Snakefile of another workflow or folder.
 if IMPORTED:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shlex
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -13,6 +12,7 @@ from typing import Any
 import netCDF4
 
 from burridge_knopoff.check.leftovers import leftovers, missing_files, run_logs
+from burridge_knopoff.messages import command
 from burridge_knopoff.provenance.bad_file import BadFile
 from burridge_knopoff.provenance.origin import Origin
 from burridge_knopoff.provenance.record import NAME, remake_command
@@ -88,8 +88,9 @@ class Check:
         return [*lines, f"remake: {self._remake()}"] if self.paths else lines
 
     def _remake(self) -> str:
-        listed = shlex.join(["bk", "check", "--paths", os.path.relpath(self.results, root_of(self.results))])
-        return remake_command(self.results / NAME, *self.paths, listed=listed * (len(self.paths) > MOST_IN_COMMAND))
+        listed = ("bk", "check", "--paths", os.path.relpath(self.results, root_of(self.results)))
+        is_long = len(self.paths) > MOST_IN_COMMAND
+        return remake_command(self.results / NAME, *self.paths, listed=listed if is_long else ())
 
 
 def root_of(results: Path) -> Path:
@@ -131,7 +132,7 @@ def check_study(results: str | Path) -> Check:
         notes.append(f"not counted: files other than points, which {NAME} does not list: run snakemake")
     if left:
         files = format_count(len(left), "file")
-        notes.append(f"left over, with logs and benchmarks: {files}; delete: bk prune {results}")
+        notes.append(f"left over, with logs and benchmarks: {files}; delete: {command('bk', 'prune', results)}")
     missing = missing_files(results, record)
     file_names = [name for name in record["files"] if not name.endswith(".done")]
     rest = {name: missing.get(name, Path()) for name in file_names if name in missing or (results / name).is_file()}
@@ -224,7 +225,7 @@ def config_change(results: Path, record: dict[str, Any]) -> Finding | None:
     root = root_of(results)
     file, path = Path(record["config_file"]), root / record["config_file"]
     # A workflow that imports the study passes its config on; its Snakefile is on record.
-    option, snakefile, *_ = [*shlex.split(record["arguments"]), "", ""]
+    option, snakefile, *_ = [*record["arguments"], "", ""]
     if option == "-s" and (root / snakefile).resolve() == path.resolve():
         return Finding("note", file, "imports the study; the config of the last run is checked")
     if not path.exists():

@@ -18,6 +18,7 @@ from burridge_knopoff.cli.options import (
     settings_of,
     state_of,
 )
+from burridge_knopoff.cli.output import print_lines
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.settings import Settings
 
@@ -69,21 +70,21 @@ def run(options: argparse.Namespace) -> int:
     starts = [] if state is None else [state]
     attractors, _ = coexisting_attractors(model, search, motion, starts=starts, start=options.start)
     count, drawn = int((attractors["branch"] >= 0).sum()), int(attractors["sample_count"].sum())
-    print(f"{model_line(model)}: {'one attractor' if count == 1 else f'{count} attractors'}\n")
+    print_lines(f"{model_line(model)}: {'one attractor' if count == 1 else f'{count} attractors'}", "")
     names = ("", "_low", "_high")
     shares = np.stack([100.0 * attractors[f"basin_fraction{name}"].values[0, 0][:count] for name in names], axis=1)
     column = [f"{share:.1f} ({low:.1f} to {high:.1f}) %" for share, low, high in shares]
-    print("\n".join(attractor_table(attractors, {f"of {drawn} states (95 % interval)": column} if drawn else {})))
+    print_lines(*attractor_table(attractors, {f"of {drawn} states (95 % interval)": column} if drawn else {}))
     if drawn:
         lost = int(attractors["undetermined_count"].sum())
         why = f": they reach none of these by tau = {search.label_limit:g}, or still drift" if lost else ""
-        print(f"\nundetermined: {lost} of {drawn} states{why}")
+        print_lines("", f"undetermined: {lost} of {drawn} states{why}")
     if state is not None:
         reached = attractors.isel(law=0, a=0).sel(contact=model.contact, start=options.start, initial=state.name)
         branch = reached["initial_branch"].item()
         name = branch_label(attractors, branch, reached["initial_side"].item()) if branch >= 0 else "none of them"
-        print(f"{state.name} reaches: {name}")
+        print_lines(f"{state.name} reaches: {name}")
     if options.out:
         write_summary(attractors.assign_attrs(history=command_of(options)), options.out)
-        print(f"written: {options.out}")
+        print_lines(f"written: {options.out}")
     return 0

@@ -18,6 +18,7 @@ from burridge_knopoff.cli.options import (
     settings_of,
     state_of,
 )
+from burridge_knopoff.cli.output import print_lines
 from burridge_knopoff.messages import format_value
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MotionSettings
@@ -70,11 +71,11 @@ def run(options: argparse.Namespace) -> int:
     shares = [f"{100 * ((branch == number) & (side == of)).mean():.2f} %" for number, of in reached]
     first, last = ("{:g} to {:g}".format(*getattr(options, f"{end}_position")) for end in ("first", "last"))
     pixels = options.pixels
-    print(f"{model_line(model)}: {pixels} x {pixels} states, U_1(0) {first}, U_{model.blocks}(0) {last}\n")
-    print("\n".join(attractor_table(attractors, {"of the plane": shares})))
-    print(f"\nundetermined: {100 * (branch < 0).mean():.2f} % of the plane")
+    print_lines(f"{model_line(model)}: {pixels} x {pixels} states, U_1(0) {first}, U_{model.blocks}(0) {last}", "")
+    print_lines(*attractor_table(attractors, {"of the plane": shares}))
+    print_lines("", f"undetermined: {100 * (branch < 0).mean():.2f} % of the plane")
     for path, dataset in ((out, basins), (attractors_out, attractors)):
         if path:
             write_summary(dataset.assign_attrs(history=command_of(options)), path)
-            print(f"written: {path}")
+            print_lines(f"written: {path}")
     return 0

@@ -16,6 +16,7 @@ from burridge_knopoff.cli.options import (
     settings_of,
     state_of,
 )
+from burridge_knopoff.cli.output import print_lines
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import EXIT_CODE, Status
@@ -57,15 +58,16 @@ def run(options: argparse.Namespace) -> int:
     summary = summarize([events], [model.law.name], [model.a], settings.low, settings.high).isel(law=0, a=0)
     status = Status(summary["status"].item())
     count = summary["event_count"].item()
-    print(f"{model_line(model)}, from {state.name}: {status.name.lower()}\n")
+    print_lines(f"{model_line(model)}, from {state.name}: {status.name.lower()}", "")
     until = f"to {settings.end:g}" if status == Status.COMPLETED else "until the run ended"
-    print(f"events      {count} from tau = {settings.transient:g} {until}")
+    print_lines(f"events      {count} from tau = {settings.transient:g} {until}")
     if count and status == Status.COMPLETED:
         rate, error = (summary[name].item() for name in ("event_rate", "event_rate_error"))
-        print(f"rate        {to_ascii(with_error(rate, error))} per unit of tau")
+        print_lines(f"rate        {to_ascii(with_error(rate, error))} per unit of tau")
     if count:
         magnitude, blocks = events["magnitude"].values, events["blocks"].values
-        print(f"magnitude   {magnitude.min():.4g} to {magnitude.max():.4g}; {blocks.min()} to {blocks.max()} blocks")
+        extent = f"{blocks.min()} to {blocks.max()} blocks"
+        print_lines(f"magnitude   {magnitude.min():.4g} to {magnitude.max():.4g}; {extent}")
     if count and status == Status.COMPLETED:
         parts = ("error", "scatter", "spread", "low", "high", "count", "p_value")
         slope, error, scatter, spread, low, high, fitted, p_value = (
@@ -73,12 +75,12 @@ def run(options: argparse.Namespace) -> int:
         )
         where = f"{fitted} events from {low:g} to {high:g}"
         fit = f"{to_ascii(with_error(slope, error))}, {format_p_value(p_value)}, of" if slope == slope else "none:"
-        print(f"slope       {fit} {where}")
+        print_lines(f"slope       {fit} {where}")
         if spread > 0.0:
-            print(f"            it changes within this range; from run to run it scatters by {scatter:.2g}")
+            print_lines(f"            it changes within this range; from run to run it scatters by {scatter:.2g}")
     if reason := digest(events):
-        print(reason)
+        print_lines(*reason.splitlines())
     if options.out:
         write_summary(events.assign_attrs(history=command_of(options)), options.out)
-        print(f"written: {options.out}")
+        print_lines(f"written: {options.out}")
     return 0 if status == Status.COMPLETED else EXIT_CODE

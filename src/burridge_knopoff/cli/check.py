@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 
+from burridge_knopoff.cli.output import print_lines
+
 DESCRIPTION = """List the points and catalogues of studies that are missing, corrupt, outdated or failed, summaries
 that are corrupt, missing files of jobs that have started, and files that do not belong to the study. Exit code 0: no
 problems; 1: files are missing, corrupt or outdated; 3: runs have failed, without other problems."""
@@ -26,7 +28,6 @@ def run(options: argparse.Namespace) -> int:
     codes = set()
     for results in options.results:
         check = check_study(results)
-        for line in check.paths if options.paths else check.lines():
-            print(line)
+        print_lines(*(check.paths if options.paths else check.lines()))
         codes.add(check.exit_code)
     return 1 if 1 in codes else max(codes)

@@ -6,6 +6,7 @@ import argparse
 import math
 
 from burridge_knopoff.cli.options import add_model, add_settings, add_state, model_line, model_of, settings_of, state_of
+from burridge_knopoff.cli.output import print_lines
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.derivative import none_because
@@ -48,23 +49,23 @@ def run(options: argparse.Namespace) -> int:
         window_range(model.chain).form(options.window, "window")
     trajectory = simulation.run(model, state, settings_of(Settings, options))
     ended = early_end(Status[trajectory.status.upper()], trajectory.end_time)
-    print(f"{model_line(model)}, from {state.name}: {ended or f'completed at tau = {trajectory.end_time:g}'}\n")
+    print_lines(f"{model_line(model)}, from {state.name}: {ended or f'completed at tau = {trajectory.end_time:g}'}", "")
     if ended:
-        print("no exponents, no kind of motion and no <J>")
+        print_lines("no exponents, no kind of motion and no <J>")
     else:
         if trajectory.missing_derivative:
-            print(f"exponents: {none_because(trajectory.missing_derivative)}\n")
+            print_lines(f"exponents: {none_because(trajectory.missing_derivative)}", "")
         exponents = zip(trajectory.lyapunov_exponent, trajectory.lyapunov_error, strict=True)
         rows = [(str(k), f"{value:z.6f}", f"{error:.6f}") for k, (value, error) in enumerate(exponents, 1)]
-        print("\n".join(table(("", "Lyapunov exponent", "error"), rows)))
+        print_lines(*table(("", "Lyapunov exponent", "error"), rows))
         if trajectory.lyapunov_infinite_count > 0:
             infinite = int(trajectory.lyapunov_infinite_count)
             verb = "is" if infinite == 1 else "are"
-            print(f"at least {infinite} of the {2 * model.blocks} exponents {verb} -infinity: blocks stick")
+            print_lines(f"at least {infinite} of the {2 * model.blocks} exponents {verb} -infinity: blocks stick")
         motion = motion.scaled_to_velocity(model.v)
         outcome = motion_of_run(vars(trajectory), model.chain.is_mirror_symmetric, motion)
-        print(f"\nmotion: {format_motion(outcome, motion)}")
-        print(f"<J> = {to_ascii(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}")
+        print_lines("", f"motion: {format_motion(outcome, motion)}")
+        print_lines(f"<J> = {to_ascii(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}")
     if model.chain.is_mirror_symmetric:
         start = model.begin(state, options.start)
         alignment = max(options.transient, ALIGNMENT * model.chain.own_units.time)
@@ -73,8 +74,8 @@ def run(options: argparse.Namespace) -> int:
             words = "none, its run did not complete" if math.isnan(value) else to_ascii(with_error(value, error))
         except OrbitError as reason:
             words = f"none: {reason}"
-        print(f"transverse exponent of the nearby symmetric motion: {words}")
+        print_lines(f"transverse exponent of the nearby symmetric motion: {words}")
     if options.out:
         write_point(trajectory, options.out)
-        print(f"written: {options.out}")
+        print_lines(f"written: {options.out}")
     return EXIT_CODE if ended else 0

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import contextlib
 import re
-import shlex
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -13,7 +12,7 @@ from typing import Any, TypeVar
 
 from burridge_knopoff.laws import LAWS, Law, law_of, unknown_law
 from burridge_knopoff.library.coercion import OWN
-from burridge_knopoff.messages import format_value
+from burridge_knopoff.messages import command, format_value
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.fields import FOLLOWS, REQUIRED, fields_of
 from burridge_knopoff.model.initial import PAPER_STATES, STATE_NAME, InitialState, initial_state
@@ -250,7 +249,7 @@ def command_of(options: argparse.Namespace) -> str:
     """Return the command without its output files, as recorded in these files."""
     files, words = ("--out", "--attractors-out"), ["bk", *options.given]
     kept = [word for before, word in pairwise(words) if before not in files and not word.startswith(files)]
-    return shlex.join(["bk", *kept])
+    return command("bk", *kept)
 
 
 def model_line(model: Model) -> str:

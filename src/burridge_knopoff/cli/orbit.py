@@ -15,6 +15,7 @@ from burridge_knopoff.cli.options import (
     read_number,
     state_of,
 )
+from burridge_knopoff.cli.output import print_lines
 from burridge_knopoff.model.ranges import Number
 from burridge_knopoff.running.settings import LONGEST, Settings
 
@@ -67,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
     state = state_of(options)
     model = model_of(options, state)
     orbit = _synchronized(model) if state is None else _reached(model, state, options.start, settling)
-    print("\n".join([model_line(model), "", *_lines(orbit, options.events)]))
+    print_lines(model_line(model), "", *_lines(orbit, options.events))
     return 0
 
 

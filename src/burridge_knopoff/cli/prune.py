@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from burridge_knopoff.cli.output import print_lines
+
 DESCRIPTION = """Delete and list files of laws, initial states, values of a and stages that are no longer in the config
 of the last run, with their logs and benchmarks, and files that only earlier versions wrote. Files of other names are
 kept. Nothing is deleted if a point is missing or a file is outdated, since the record of the last run may then be that
@@ -35,8 +37,8 @@ def run(options: argparse.Namespace) -> int:
         record, study = recorded_study(folder)
         left = leftovers(folder, study, record)
         for path in left:
-            print(path)
+            print_lines(str(path))
         if not options.dry_run:
             delete(folder, left)
-        print(f"{folder}: {format_count(len(left), 'file')} {'would be ' * options.dry_run}deleted")
+        print_lines(f"{folder}: {format_count(len(left), 'file')} {'would be ' * options.dry_run}deleted")
     return 0

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 
+from burridge_knopoff.cli.output import print_lines
+
 DESCRIPTION = """Describe a point file (model, motion and numbers of the run) or a summary (question, dimensions and
 numbers). --plot also draws a picture: J, section points and velocities of a run, or the figure of a summary."""
 
@@ -34,7 +36,7 @@ def run(options: argparse.Namespace) -> int:
     else:
         from burridge_knopoff.show.summary import summary_lines as lines_of
     width = terminal_width()
-    print("\n".join(lines_of(result, width)))
+    print_lines(*lines_of(result, width))
     if options.plot is not None:
-        print("\n".join(["", *wrap_lines([write_picture(result, options.plot)], width)]))
+        print_lines("", *wrap_lines([write_picture(result, options.plot)], width))
     return 0

@@ -8,6 +8,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from burridge_knopoff.cli.options import add_model, add_settings, add_state, model_of, settings_of, state_of
+from burridge_knopoff.cli.output import print_lines
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.derivative import none_because
@@ -57,19 +58,19 @@ def run(options: argparse.Namespace) -> int:
     model = model_of(options, state)
     settings.check_chain(model.chain)
     if cost := cost_note(model, model.begin(state, settings.start), settings):
-        print(f"note: bk simulate: {cost}", file=sys.stderr, flush=True)
+        print_lines(f"note: bk simulate: {cost}", file=sys.stderr)
     trajectory = simulation.run(model, state, settings)
     write_point(trajectory, options.out)
     for key, part in _PARTS.items():
         requested, available = getattr(settings, key), settings.duration if part == "run" else settings.window
         if requested > available and requested != fields_of(Settings)[key].default:
             note = f"{key}: {requested:g} is longer than the {part}; all {available:g} time units were recorded"
-            print(f"note: bk simulate: {note}", file=sys.stderr)
+            print_lines(f"note: bk simulate: {note}", file=sys.stderr)
     if trajectory.status == "completed":
-        print(f"{options.out}: {outcome(trajectory)}")
+        print_lines(f"{options.out}: {outcome(trajectory)}")
     else:
         ended = early_end(Status[trajectory.status.upper()], trajectory.end_time)
-        print(f"note: bk simulate: {options.out}: {ended}; its averages are NaN", file=sys.stderr)
+        print_lines(f"note: bk simulate: {options.out}: {ended}; its averages are NaN", file=sys.stderr)
         return EXIT_CODE
     return 0
 

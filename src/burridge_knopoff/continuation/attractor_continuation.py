@@ -26,6 +26,7 @@ from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
 from burridge_knopoff.attractors.table import Row
 from burridge_knopoff.basins.fractions import fraction_labels
 from burridge_knopoff.continuation.branches import REMEMBERED, branches
+from burridge_knopoff.continuation.cached import CLASSES
 from burridge_knopoff.continuation.matching import Matcher, outlines
 from burridge_knopoff.continuation.refinement import refine_searches
 from burridge_knopoff.continuation.settings import REFINEMENT, RefinementSettings
@@ -92,7 +93,7 @@ def continue_attractors(
     Raises ValueError if an initial state does not fit the models.
     """
     matcher = Matcher(models[0].scale, refine.longest_period)
-    with parallel_map(processes, folder) as pool:
+    with parallel_map(processes, folder, CLASSES) as pool:
         searches = [Search(model, settings, motion) for model in models]
         from_states = partial(_search, starts=starts, start=start)
         searches = pool("searched from initial states", from_states, searches, span=SEARCHED)

@@ -13,6 +13,7 @@ import scipy
 import xarray
 
 from burridge_knopoff.continuation.branch_changes import BranchChange, is_followed
+from burridge_knopoff.continuation.cached import CLASSES
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.limit_cycle import limit_cycle
 from burridge_knopoff.motion.section_returns import state_of
@@ -92,7 +93,7 @@ def follow_orbits(
     models = [model.at(float(table["a"].values[k])) for k, _ in places]
     states = ([table[name].values[place] for place in places] for name in ("position", "velocity"))
     followed = FollowedOrbits()
-    with parallel_map(processes, folder) as pool:
+    with parallel_map(processes, folder, CLASSES) as pool:
         orbits = pool("periodic orbits", _periodic_orbit, models, *states, span=(0.0, PERIODIC_ORBITS))
         closed = [pair for pair in zip(places, orbits, strict=True) if not _is_lost(model, pair[1])]
         for following in _rounds(_sort(closed), followed, ORBITS_PER_PROCESS * processes):
@@ -118,11 +119,11 @@ def _places(table: xarray.Dataset, changes: Sequence[BranchChange]) -> list[Plac
     return [(int(k), int(slot)) for k, slot in np.argwhere(closed & mask)]
 
 
-def _is_lost(model: Model, outcome: PeriodicOrbit | HalfBranch | OrbitError) -> bool:
-    """Return whether there is an error instead of an orbit, and print it."""
-    if isinstance(outcome, OrbitError):
+def _is_lost(model: Model, outcome: PeriodicOrbit | HalfBranch | str) -> bool:
+    """Return whether there is the text of an error instead of an orbit, and print it."""
+    if isinstance(outcome, str):
         print(f"{model.law.name}: {outcome}")
-    return isinstance(outcome, OrbitError)
+    return isinstance(outcome, str)
 
 
 def _rounds(left: Sequence[Placed], followed: FollowedOrbits, count: int) -> Iterator[list[Placed]]:
@@ -149,7 +150,7 @@ def _sort(orbits: Sequence[Placed]) -> list[Placed]:
     return [orbits[k] for k in order]
 
 
-def _periodic_orbit(model: Model, position: np.ndarray, velocity: np.ndarray) -> PeriodicOrbit | OrbitError:
+def _periodic_orbit(model: Model, position: np.ndarray, velocity: np.ndarray) -> PeriodicOrbit | str:
     """Return the periodic orbit on which a motion through a state U_i, U_i' has settled, or why there is none."""
     state = state_of(np.concatenate([position - model.sliding_offset, velocity]))
     try:
@@ -161,12 +162,12 @@ def _periodic_orbit(model: Model, position: np.ndarray, velocity: np.ndarray) ->
         if multipliers(orbit).unstable_count:
             raise OrbitError(f"a = {model.a:.12g}: the periodic orbit next to the motion is unstable")
     except OrbitError as error:
-        return error
+        return str(error)
     orbit.forget_events()
     return orbit
 
 
-def _half(orbit: PeriodicOrbit, upward: bool, largest: float) -> HalfBranch | OrbitError:
+def _half(orbit: PeriodicOrbit, upward: bool, largest: float) -> HalfBranch | str:
     """Follow an orbit in one direction with its bifurcations, or return why it cannot be followed."""
     try:
         # Steps are large enough to cross a wide grid.
@@ -181,7 +182,7 @@ def _half(orbit: PeriodicOrbit, upward: bool, largest: float) -> HalfBranch | Or
         )
         _ = [point.orbit.mean_distance for point in branch.drawn_orbits]
     except OrbitError as error:
-        return error
+        return str(error)
     for point in branch.orbits:
         point.orbit.forget_events()
     return branch

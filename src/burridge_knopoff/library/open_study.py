@@ -11,7 +11,7 @@ from threading import RLock
 import netCDF4
 import xarray
 
-from burridge_knopoff.messages import refusal
+from burridge_knopoff.messages import escape_unprintable, refusal
 from burridge_knopoff.study.integrity import check_file
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import all_points
@@ -113,7 +113,7 @@ class StudyResults(Mapping[str, xarray.DataTree]):
     def _title(self, name: str) -> str:
         try:
             with _LOCK, netCDF4.Dataset(self._results / f"{name}.nc") as dataset:
-                return shorten(str(dataset.title), LONGEST, placeholder=" …")
+                return escape_unprintable(shorten(str(dataset.title), LONGEST, placeholder=" …"))
         except (OSError, AttributeError, RuntimeError):
             return "cannot be read"
 

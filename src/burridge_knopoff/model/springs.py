@@ -152,6 +152,8 @@ def read_edges(springs: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nda
 
 def _content(path: str) -> bytes:
     try:
+        if Path(path).exists() and not Path(path).is_file():
+            raise OSError(0, "it is not a regular file")
         return Path(path).read_bytes()
     except OSError as error:
         raise ValueError(f"chain.springs: {path}: cannot be read: {error.strerror}") from None

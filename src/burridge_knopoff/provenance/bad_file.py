@@ -20,8 +20,8 @@ class BadFile(ValueError):
     """
 
     def __init__(self, path: str | Path, reason: str, kind: str = "outdated") -> None:
-        self.path, self.reason, self.kind = Path(path), reason, kind
-        super().__init__(f"{escape_unprintable(str(path))}: {reason}{REMEDY}{remake_command(path)}")
+        self.path, self.reason, self.kind = Path(path), escape_unprintable(reason), kind
+        super().__init__(f"{escape_unprintable(str(path))}: {self.reason}{REMEDY}{remake_command(path)}")
 
 
 def read_bytes(path: Path, size: int = -1) -> bytes:

@@ -26,14 +26,14 @@ PROBE = 1 << 20
 def write_whole(path: str | Path, write: Callable[[str], object]) -> None:
     """Let `write` fill a temporary file next to `path`, then move it into place; leave nothing behind if it fails.
 
-    Temporary files of `path` that killed processes left are removed as well. Two processes may write the same file at
-    the same time: one of the two complete files remains.
+    A link in its place is replaced, and the file to which it points is left alone. Temporary files of `path` that
+    killed processes left are removed as well. Two processes may write the same file at the same time: one of the two
+    complete files remains.
 
     Raises OSError, one line that names the file, if it or its folder cannot be written.
     """
     check_target(path)
-    # A link is kept; the file that it points to is replaced.
-    path = Path(os.path.realpath(path))
+    path = Path(os.path.realpath(Path(path).parent), Path(path).name)
     # Keep the suffix: matplotlib and others derive the format from it.
     name = ".{}.part-{}{}"
     for attempts_left in reversed(range(ATTEMPTS)):
@@ -112,13 +112,18 @@ def _give_back(stream: TextIO, number: int) -> None:
 
 def check_target(path: str | Path) -> None:
     """Raise OSError, one line, if a file of that name could not be written, before hours of work are lost."""
-    path = Path(os.path.realpath(path))
+    path = Path(os.path.realpath(Path(path).parent), Path(path).name)
     try:
         if path.exists() and not path.is_file():
             raise OSError(f"it is {'a folder' if path.is_dir() else 'not a regular file'}")
         check_folder(path.parent)
     except OSError as error:
         raise OSError(f"{path}: cannot be written: {error}") from None
+
+
+def remove_links(*paths: str | Path) -> None:
+    """Remove links in place of files that others will open for writing, and that would write elsewhere."""
+    _remove(*(path for path in map(Path, paths) if path.is_symlink()))
 
 
 def check_folder(path: str | Path, *, inside: bool = False) -> None:

@@ -91,7 +91,7 @@ def embedded_origin(path: Path) -> dict[str, Any]:
         case ".png":
             from PIL import Image
 
-            with Image.open(path) as picture:
+            with Image.open(path, formats=["PNG"]) as picture:
                 return json.loads(picture.info.get(NAME, "{}"))
         case ".json":
             return json.loads(path.read_text(encoding="utf-8")).get(NAME, {})

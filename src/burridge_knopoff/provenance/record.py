@@ -5,14 +5,16 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import re
 import shlex
 import subprocess
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from burridge_knopoff.messages import escape_unprintable
+from burridge_knopoff.messages import command, escape_unprintable
 from burridge_knopoff.provenance.files import display_path, write_text
 from burridge_knopoff.provenance.sources import PACKAGE, SOFTWARE
 
@@ -23,6 +25,9 @@ _TYPES = {
     **dict.fromkeys(("software", "git_commit", "arguments", "config_file"), str),
     **dict.fromkeys(("given", "config", "grid", "files"), dict),
 }
+#: The name of a file in the results, as the workflow makes it: it leads nowhere else, and is no option of a command.
+_FILE = re.compile(r"[a-zA-Z0-9][\w.=+-]*(/[a-zA-Z0-9][\w.=+-]*)*", re.ASCII)
+_ENTRY = re.compile(r"[a-zA-Z_][\w-]*=.*", re.ASCII | re.DOTALL)
 
 
 @cache
@@ -53,7 +58,7 @@ def write_study_record(
 
     config, grid : the config with all defaults, and {parameter: {name in file names: value}}
     config_file, given : the config file and its content
-    arguments : arguments of `snakemake` except its targets, such as `--configfile config/mine.yaml`
+    arguments : arguments of `snakemake` except its targets, quoted for a shell: `--configfile config/mine.yaml`
     files : {file that the workflow makes in the folder, except points: its log}
     Raises OSError, one line, if the folder cannot be written to.
     """
@@ -68,12 +73,13 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
     """Return the record of a folder of results.
 
     software, git_commit : of the last run
-    arguments, config_file : as they were recorded
+    arguments : words for the command line of `snakemake`, see `write_study_record`
+    config_file : as it was recorded
     given, config : the content of the config file, and the config with all defaults
     grid : {parameter: {name in file names: value}}
     files : {file that the workflow makes, except points: its log}
 
-    Raises ValueError, one line, if there is no record.
+    Raises ValueError, one line, if there is no record, or if it has arguments or names of files that no run records.
     """
     path = Path(results, NAME)
     try:
@@ -88,8 +94,35 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
     complete = {"files": {}, **record} if isinstance(record, dict) else {}
     types = {key: type(complete.get(key)) for key in _TYPES}
     if types != _TYPES or not all(isinstance(log, str) for log in complete["files"].values()):
-        raise ValueError(f"{escape_unprintable(str(path))}: not a valid record; run snakemake again to rewrite it")
-    return complete
+        raise _invalid(path)
+    arguments = _recorded_words(complete["arguments"], Path(results))
+    if arguments is None or not all(map(_FILE.fullmatch, chain(*complete["files"].items()))):
+        raise _invalid(path)
+    return {**complete, "arguments": arguments}
+
+
+def _invalid(path: Path) -> ValueError:
+    return ValueError(f"{escape_unprintable(str(path))}: not a valid record; run snakemake again to rewrite it")
+
+
+def _recorded_words(arguments: str, results: Path) -> list[str] | None:
+    """Return the words of recorded arguments; None if they are others than a run of these results has."""
+    try:
+        words = shlex.split(arguments)
+    except ValueError:
+        return None
+    named, left = dict[str, list[str]](), words
+    for option in ("-s", "--configfile"):
+        if left[:1] == [option]:
+            named[option], left = left[1:2], left[2:]
+    if not all(path and not path[0].startswith("-") for path in named.values()):
+        return None
+    if left and not (left[0] == "--config" and all(map(_ENTRY.fullmatch, left[1:]))):
+        return None
+    # A Snakefile that came with the results would run code of whoever sent them.
+    whole = results.resolve()
+    snakefile = [Path(results.absolute().parents[1], path).resolve() for path in named.get("-s", [])]
+    return None if any(path.is_relative_to(whole) for path in snakefile) else words
 
 
 def study_folder(path: str | Path) -> Path | None:
@@ -114,25 +147,29 @@ def check_owner(results: str | Path, config_file: str | Path, given: dict[str, A
         return
     differs = ", ".join(key for key in {**owner_keys, **given} if owner_keys.get(key) != given.get(key))
     raise ValueError(
-        f"{display_path(config_file)}: study: got {Path(results).name!r}, expected another name: {results} has the "
-        f"results of {owner}, which differs ({differs}); to continue there with this config, remove "
-        f"{Path(results, NAME)}"
+        escape_unprintable(
+            f"{display_path(config_file)}: study: got {Path(results).name!r}, expected another name: {results} has the "
+            f"results of {owner}, which differs ({differs}); to continue there with this config, remove "
+            f"{Path(results, NAME)}"
+        )
     )
 
 
-def remake_command(study_file: str | Path, *paths: str | Path, listed: str = "") -> str:
+def remake_command(study_file: str | Path, *paths: str | Path, listed: Sequence[str] = ()) -> str:
     """Return the command that recreates files and everything that depends on them, from any folder.
 
     study_file : a file in the results of their study
     paths : the files, if other than that one
-    listed : if there are too many paths, a command that prints them relative to the folder where `snakemake` runs
+    listed : if there are too many paths, the words of a command that prints them relative to the folder where
+        `snakemake` runs
     """
-    place, arguments, named = "", "", [str(path) for path in paths or [study_file]]
+    place, arguments, named = "", list[str](), [str(path) for path in paths or [study_file]]
     if folder := study_folder(study_file):
         # Snakemake identifies files by their paths from the folder where it was called for results/<study>.
         root = folder.parents[1]
         named = [os.path.relpath(name, root) for name in named]
-        place = "" if root.resolve() == Path.cwd() else f"cd {shlex.quote(str(root))} && "
+        place = "" if root.resolve() == Path.cwd() else f"{command('cd', root)} && "
         with contextlib.suppress(ValueError):
-            arguments = f"{read_study_record(folder)['arguments']} ".lstrip()
-    return f"{place}snakemake -c2 {arguments}-R {f'$({listed})' if listed else shlex.join(named)}"
+            arguments = read_study_record(folder)["arguments"]
+    start = place + command("snakemake", "-c2", *arguments, "-R")
+    return f"{start} {f'$({command(*listed)})' if listed else command(*named)}"

@@ -49,6 +49,8 @@ _DOCSTRING = re.compile(rf"(\A(?:#[^\n]*\n)*|:[ \t]*\n)\s*{_TEXT}[ \t]*$", re.DO
 _CPP = re.compile(
     r"""R"(\w*)\((?s:.*?)\)\1"|"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)*'|\b\d[\w'.]*|(?P<comment>//.*|/\*(?s:.*?)\*/)"""
 )
+# A name in a file of results must not lead to another file.
+_MODULE, _SCRIPT = re.compile(rf"{PACKAGE.name}(\.\w+)+"), re.compile(r"\w+\.py")
 _IMPORT = re.compile(r"^[ \t]*(?:from\s+(\S+)\s+)?import\s+(\([^)]*\)|.+)", re.MULTILINE)
 
 
@@ -89,8 +91,8 @@ def current_sources(recorded: str) -> str:
 
     recorded : names of scripts of the workflow and of modules, and their fingerprint, separated by blanks
     """
-    *names, _ = recorded.split()
-    entries = [SCRIPTS / name if name.endswith(".py") else name for name in names]
+    names = recorded.split()[:-1]
+    entries = [SCRIPTS / name if _SCRIPT.fullmatch(name) else name for name in names]
     if not all(entry.is_file() for entry in entries if isinstance(entry, Path)):
         return ""
     return " ".join([*names, source_fingerprint(*entries)])
@@ -119,6 +121,8 @@ def files_of(module: str) -> list[Path]:
 
     The files of the compiled module are all of its sources.
     """
+    if not _MODULE.fullmatch(module):
+        return []
     path = PACKAGE.joinpath(*module.split(".")[1:])
     if path == PACKAGE / "kernel" / "_core":
         return [COMPILATION, *sorted(source for source in path.parent.iterdir() if source.suffix in (".cpp", ".h"))]

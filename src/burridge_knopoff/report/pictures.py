@@ -34,7 +34,8 @@ def read_picture(path: str | Path) -> Picture:
     """
     name = Path(path).stem
     try:
-        with Image.open(path) as opened:
+        # Pillow would start another program for a picture in PostScript.
+        with Image.open(path, formats=["PNG"]) as opened:
             colors = opened.convert("RGB").quantize(256, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
     except (OSError, SyntaxError) as error:
         raise BadFile(path, f"is not a readable picture ({error})") from None

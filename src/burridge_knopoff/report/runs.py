@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray
 
+from burridge_knopoff.messages import command
 from burridge_knopoff.motion.kind import Motion, MotionKind, format_motion
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.report.numbers import format_measured, json_number
@@ -39,7 +39,7 @@ class Commands:
 
     def study_command(self, *words: str) -> str:
         """Return a Snakemake command with these words for the study."""
-        return shlex.join(["snakemake", *words, *self.arguments])
+        return command("snakemake", *words, *self.arguments)
 
     def simulate(self, law: str, initial: str, a: str) -> str:
         """Return the command of the same run without Snakemake, which writes the point file to the current folder."""
@@ -74,7 +74,7 @@ def embedded_runs(
         "exponent_texts": _format_errors(exponent, error),
         "agrees": agreement["agrees"].values.tolist(),
         "simulate": [[_split_command(commands, law, initial) for initial in study.initial] for law in study.laws],
-        "arguments": shlex.join(commands.arguments),
+        "arguments": command(*commands.arguments),
         "results": f"results/{study.name}",
         "statuses": list(STATUS_WORDS.values()),
     }

@@ -6,8 +6,8 @@ versions of NumPy and SciPy, and the values of the arguments.
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
+import logging
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import fields, is_dataclass
 from functools import partial
@@ -18,32 +18,48 @@ from typing import Any
 import numpy as np
 import scipy
 
+from burridge_knopoff.messages import cut
 from burridge_knopoff.provenance.files import write_whole
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.running.packing import pack, unpack
 
+_LOG = logging.getLogger(__name__)
 _DIGIT = "[0-9a-f]"
 _HEAD = hashlib.sha256().digest_size
 
 
-def cached_call(folder: Path, function: Callable[..., Any], *items: Any) -> tuple[Any, Path, bool]:
+def cached_call(
+    folder: Path, classes: Collection[type], function: Callable[..., Any], *items: Any
+) -> tuple[Any, Path, bool]:
     """Return the result of a call, its file in the cache, and whether the result was read from there.
 
-    A file that is corrupt or holds another result is ignored. Raises OSError, one line, if the file cannot be written.
+    classes : of the objects that may occur in the result, see `packing`
+    A file that is corrupt or holds another result is ignored, with a line in the log. Raises OSError, one line, if the
+    file cannot be written.
     """
     digest = hashlib.sha256(f"{np.__version__} {scipy.__version__}".encode())
     for part in _key_parts([function, *items]):
         digest.update(part)
     key = digest.hexdigest()[:32]
     path = folder / key
-    with contextlib.suppress(OSError, ValueError, LookupError, AttributeError):
-        head, content = (data := path.read_bytes())[:_HEAD], data[_HEAD:]
-        if head == _head(key, content):
-            return unpack(content), path, True
+    if path.is_file():
+        try:
+            return _read(path, key, classes), path, True
+        except (OSError, ValueError) as error:
+            _LOG.warning("note: %s: not a result of this call, which is computed again: %s", path, cut(str(error)))
     result = function(*items)
-    content = pack(result)
+    content = pack(result, classes)
     write_whole(path, lambda name: Path(name).write_bytes(_head(key, content) + content))
     return result, path, False
+
+
+def _read(path: Path, key: str, classes: Collection[type]) -> Any:
+    """Return the result in a file; raises ValueError if it is not that of the key."""
+    data = path.read_bytes()
+    head, content = data[:_HEAD], data[_HEAD:]
+    if head != _head(key, content):
+        raise ValueError("wrong checksum")
+    return unpack(content, classes)
 
 
 def _head(key: str, content: bytes) -> bytes:
@@ -58,7 +74,8 @@ def delete_unused(folder: Path, asked: Collection[Path]) -> None:
     """
     result = f"*/{32 * _DIGIT}"
     for path in (*folder.glob(result), *folder.parent.glob(f"{16 * _DIGIT}/{result}")):
-        if path not in asked:
+        # The target of a link does not belong to the cache.
+        if path not in asked and not path.parent.is_symlink():
             path.unlink(missing_ok=True)
 
 

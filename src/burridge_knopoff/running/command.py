@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterator
 from typing import Any
 
 from burridge_knopoff.laws import LAWS, Law
+from burridge_knopoff.messages import command
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import PAPER_V, InitialState, PaperState
@@ -27,7 +27,7 @@ def simulate_command(model: Model, initial: InitialState, settings: Settings) ->
     if not isinstance(initial, PaperState) or model.v == PAPER_V:
         words += [f"--{key}={_format_value(getattr(initial, key))}" for key in fields_of(InitialState)]
     words += _changed_options(settings)
-    return shlex.join(words)
+    return command(*words)
 
 
 def _law_options(law: Law) -> Iterator[str]:

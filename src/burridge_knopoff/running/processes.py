@@ -9,7 +9,7 @@ import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, ProcessPoolExecutor
 from concurrent.futures import wait as wait_for
 from contextlib import contextmanager
@@ -37,13 +37,13 @@ _R = TypeVar("_R")
 class ParallelMap:
     """Applies functions to many items, in parallel if there is a pool of processes.
 
-    pool : None if this process does all the work; folder : see `parallel_map`
+    pool : None if this process does all the work; folder, classes : see `parallel_map`
 
     Functions, items and results must be picklable. A call must not rely on the side effects of another call.
     """
 
-    def __init__(self, pool: Executor | None, folder: str | Path | None) -> None:
-        self._pool, self._folder = pool, folder
+    def __init__(self, pool: Executor | None, folder: str | Path | None, classes: Collection[type]) -> None:
+        self._pool, self._folder, self._classes = pool, folder, classes
         self.asked: set[Path] = set()
         self._taken: list[tuple[float, bool]] = []
         self._last, self._reported = "", time.monotonic()
@@ -58,7 +58,7 @@ class ParallelMap:
         Calls begin with the last item: along a grid of a it takes longest, and no process then waits for it at the end.
         The time of the calls is logged in seconds; successive calls with the same `what` are logged together.
         """
-        call = partial(_timed, self._begin(what), function)
+        call = partial(_timed, self._begin(what), self._classes, function)
         results = []
         backward = [sequence[::-1] for sequence in items]
         for result in self._pool.map(call, *backward) if self._pool else map(call, *backward):
@@ -80,7 +80,7 @@ class ParallelMap:
         successors : takes name, item and result, in any order of the items, and returns further pairs
         span, order of the calls : see `__call__`
         """
-        call, done = partial(_timed, self._begin(what), function), 0
+        call, done = partial(_timed, self._begin(what), self._classes, function), 0
         backward = [*items][::-1]
         if self._pool is None:
             todo = deque(backward)
@@ -129,22 +129,25 @@ class ParallelMap:
 
 
 @contextmanager
-def parallel_map(processes: int, folder: str | Path | None = None) -> Iterator[ParallelMap]:
+def parallel_map(
+    processes: int, folder: str | Path | None = None, classes: Collection[type] = ()
+) -> Iterator[ParallelMap]:
     """Yield a `ParallelMap`, which applies functions to many items in several processes at once.
 
     On macOS this process does all the work.
 
     folder : cache of the results for later runs, see `running.cache`; None for no cache. Cached results that were not
         used by any call are deleted at the end
+    classes : of the objects that may occur in cached results
     """
     # macOS does not allow fork once libraries have threads, and a new interpreter would run the caller's script again.
     if processes == 1 or sys.platform == "darwin":
-        yield (apply := ParallelMap(None, folder))
+        yield (apply := ParallelMap(None, folder, classes))
     else:
         context = get_context("fork")
         receiver, sender = context.Pipe(duplex=False)
         with receiver, sender, ProcessPoolExecutor(processes, context, _end_with_parent, (receiver,)) as pool:
-            apply = ParallelMap(pool, folder)
+            apply = ParallelMap(pool, folder, classes)
             try:
                 yield apply
             except KeyboardInterrupt:
@@ -164,10 +167,14 @@ def _log(what: str, taken: Sequence[tuple[float, bool]]) -> None:
         _LOG.info("%s", text + f"; {sum(was_read)} from the cache" * any(was_read))
 
 
-def _timed(folder: Path | None, function: Callable[..., Any], *items: Any) -> tuple[Any, float, Path | None, bool]:
+def _timed(
+    folder: Path | None, classes: Collection[type], function: Callable[..., Any], *items: Any
+) -> tuple[Any, float, Path | None, bool]:
     """Return the result of a call, its time in seconds, its file in the cache, and whether it was read from there."""
     begin = time.perf_counter()
-    result, path, was_read = cached_call(folder, function, *items) if folder else (function(*items), None, False)
+    result, path, was_read = (
+        cached_call(folder, classes, function, *items) if folder else (function(*items), None, False)
+    )
     return result, time.perf_counter() - begin, path, was_read
 
 

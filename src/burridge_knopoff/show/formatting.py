@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import shutil
 from collections.abc import Iterable
 from textwrap import shorten
@@ -10,6 +11,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.dataset.decoding import decode_flags
+from burridge_knopoff.messages import command, escape_unprintable
 from burridge_knopoff.summaries.text_table import UNLIMITED, wrap_line
 
 #: Maximum length of a list of names, in letters.
@@ -26,6 +28,14 @@ def terminal_width() -> int:
 def wrap_lines(lines: Iterable[str], width: int) -> list[str]:
     """Return lines of at most a width; continuation lines are indented, and no word is broken."""
     return [part for line in lines for part in wrap_line(line, width, indent="    ")]
+
+
+def quoted_history(history: str) -> str:
+    """Return the command in the history of a file, quoted word by word, or a text that is none as it is."""
+    try:
+        return command(*shlex.split(history)) if history.startswith("bk ") else escape_unprintable(history)
+    except ValueError:
+        return escape_unprintable(history)
 
 
 def list_numbers(values: Iterable[float]) -> str:

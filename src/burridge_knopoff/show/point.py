@@ -14,7 +14,7 @@ from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.command import CHAIN_OPTIONS
 from burridge_knopoff.running.derivative import none_because
 from burridge_knopoff.running.status import early_end
-from burridge_knopoff.show.formatting import list_numbers, wrap_lines
+from burridge_knopoff.show.formatting import list_numbers, quoted_history, wrap_lines
 from burridge_knopoff.show.result import Result
 from burridge_knopoff.study.formatting import format_count, to_ascii, with_error
 from burridge_knopoff.summaries.text_table import UNLIMITED, table
@@ -35,7 +35,8 @@ def point_lines(result: Result, width: int = UNLIMITED) -> list[str]:
         ("made by", result.origin),
     ]
     # The command is not wrapped, so that it can be copied.
-    command = f"reproduce with: {attributes['history']} --out FILE"
+    history = quoted_history(str(attributes["history"]))
+    command = f"reproduce with: {history} --out FILE" if history.startswith("bk simulate ") else f"history: {history}"
     return [*wrap_lines([head], width), "", *table((), rows, width), "", command]
 
 

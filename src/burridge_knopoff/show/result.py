@@ -16,7 +16,7 @@ from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.provenance.bad_file import BadFile
 from burridge_knopoff.provenance.opening import open_whole
 from burridge_knopoff.provenance.record import read_study_record, study_folder
-from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.provenance.sources import provenance, source_fingerprint
 from burridge_knopoff.study.integrity import check_file
 from burridge_knopoff.study.model import motion_of
 from burridge_knopoff.study.recorded import recorded_study
@@ -127,4 +127,6 @@ def open_result(path: str | Path) -> Result:
             raise
         raise ValueError(f"{path}: {error.reason}") from None
     data = xarray.load_dataset(path, engine="netcdf4")
+    if not all(isinstance(data.attrs.get(name), str) for name in provenance(__name__)):
+        raise ValueError(f"{path}: does not say which software and sources made it")
     return Result(path, data, study, read_study_record(study) if study else {}, files)

@@ -5,15 +5,13 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 from importlib import import_module
-from importlib.util import find_spec
-from pathlib import Path
 
 import numpy as np
 import xarray
 
-from burridge_knopoff.provenance.sources import PACKAGE
+from burridge_knopoff.provenance.sources import files_of
 from burridge_knopoff.show.attractors import attractor_table, branches
-from burridge_knopoff.show.formatting import describe_values, wrap_lines
+from burridge_knopoff.show.formatting import describe_values, quoted_history, wrap_lines
 from burridge_knopoff.show.result import Result
 from burridge_knopoff.summaries.text_table import UNLIMITED, table
 
@@ -51,7 +49,7 @@ def summary_lines(result: Result, width: int = UNLIMITED) -> list[str]:
     return [
         *lines,
         *wrap_lines([f"made by {result.origin}"], width),
-        f"history: {data.attrs.get('history', 'unknown')}",
+        f"history: {quoted_history(str(data.attrs.get('history', 'unknown')))}",
     ]
 
 
@@ -70,22 +68,25 @@ def digest(result: Result, width: int = UNLIMITED) -> list[str]:
         if result.name == "attractors":
             is_single = data.sizes["a"] == data.sizes["law"] == 1 and "branch_name" in data
             return attractor_table(data, {}, width) if is_single else branches(data, width)
-        name = f"burridge_knopoff.summaries.{result.name}"
-        module = import_module(name if find_spec(name) else data.attrs["source_module"])
+        # No other name in a file is imported.
+        module = import_module(next(name for name in _modules(result) if files_of(name)))
         return wrap_lines(module.digest(data).rstrip().splitlines(), width)
-    except (ImportError, AttributeError, KeyError, ValueError, IndexError):
+    except (ImportError, AttributeError, KeyError, ValueError, IndexError, StopIteration):
         # Made by other sources, or only a part of the summary.
         return []
 
 
+def _modules(result: Result) -> tuple[str, str]:
+    """Return names of modules, of which the first that exists makes a summary."""
+    return f"burridge_knopoff.summaries.{result.name}", result.data.attrs["source_module"]
+
+
 def _question(result: Result) -> Iterator[str]:
     """Yield the first paragraph of the docstring of the module that makes a summary."""
-    source = Path(*result.data.attrs["source_module"].split(".")[1:]).with_suffix(".py")
-    for path in (PACKAGE / "summaries" / f"{result.name}.py", PACKAGE / source):
-        if path.is_file():
-            text = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
-            yield " ".join(text.partition("\n\n")[0].split())
-            break
+    for path, *_ in filter(None, map(files_of, _modules(result))):
+        text = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
+        yield " ".join(text.partition("\n\n")[0].split())
+        break
 
 
 def _dimensions(data: xarray.Dataset) -> Iterator[tuple[str, str]]:

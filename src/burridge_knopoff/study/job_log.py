@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 import shutil
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
@@ -37,7 +38,7 @@ _PROGRESS = re.compile(rb"^progress ([\d.]+)$", re.MULTILINE)
 def logged_error(log: str | Path) -> str:
     """Return, in one line, the error of the last traceback in a log, or its last line if that reports a failure.
 
-    The command that recreates a bad file is cut off: all jobs that read the file name it, and `remedies` collects it.
+    The command that recreates a bad file is cut off: all jobs that read the file name it, see `bad_files`.
     """
     words = _last_error(log).partition(REMEDY)[0]
     return words if len(words) <= _LONGEST else f"{words[: _LONGEST - 3]}..."
@@ -56,14 +57,14 @@ def progress_of(logs: Iterable[str | Path], since: float = 0.0) -> float:
     return min(max(shares), 1.0)
 
 
-def remedies(logs: Iterable[str | Path]) -> list[str]:
-    """Return the commands that recreate the bad files at which jobs stopped: one for all files of a study."""
-    files: dict[str, dict[str, None]] = {}
+def bad_files(logs: Iterable[str | Path]) -> list[str]:
+    """Return the bad files at which jobs stopped, each once, by the last words of the commands that recreate them."""
+    files = []
     for log in logs:
-        if command := _last_error(log).partition(REMEDY)[2]:
-            head, option, file = command.rpartition(" -R ")
-            files.setdefault(head + option, {})[file] = None
-    return [head + " ".join(named) for head, named in files.items()]
+        _, remedy, command = _last_error(log).rpartition(REMEDY)
+        with suppress(ValueError):
+            files += shlex.split(command.rpartition(" -R ")[2])[:1] if remedy else []
+    return [*dict.fromkeys(files)]
 
 
 def _last_error(log: str | Path) -> str:
