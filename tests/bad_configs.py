@@ -253,7 +253,7 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "box": (f"{GOOD}chains: {{position: [1, -1]}}\n", ["chains.position: [1, -1]", "low < high"]),
     # More than a job can compute.
     "steps": (f"{GOOD}solver: {{linearized: rk4}}\nstep: 1.0e-9\n", ["step: 1e-09", "3.33e+09 steps"]),
-    "samples": (f"{GOOD}sampling: 1.0e-5\n", ["sampling: 1e-05", "1e7 samples"]),
+    "samples": (f"{GOOD}sampling: 1.0e-5\n", ["sampling: 1e-05", "at least 0.001 over a time of 10000"]),
     "trajectory": (
         f"{GOOD}trajectory: 7000\ntrajectory_sampling: 1.0e-4\n",
         ["trajectory_sampling: 0.0001", "samples"],
