@@ -65,7 +65,7 @@ BAD_CHANGES = [
         ["basins.tiles: 1", "numbers"],
     ),
     ({"phases": {"samples": 10**5, "amplitude": [*range(1, 50)]}}, ["phases.samples: 100000", "numbers"]),
-    ({"trajectory": 1e6}, ["trajectory_sampling: 0.05", "samples"]),
+    ({"trajectory": 1e6}, ["trajectory_sampling: 0.05", "at least 0.1 over a time of 1e+06"]),
     ({"initial": {1: PAIR}}, ["initial: got 1, expected letters"]),
     ({"events": "none"}, ["events: 'none'", "window | all"]),
     ({"agreement ": {}}, ["'agreement ': unknown key"]),
