@@ -39,7 +39,7 @@ endif
 # The programs of an environment contain the path at which it was made, and so does the installed package. In a checkout
 # that was moved or copied they are missing, or run the sources of the other one.
 ENVIRONMENTS := .venv .venv-oldest .venv-benchmark .venv-mutants
-made_at = $(lastword $(shell sed -n 's/^command = //p' $(1)/pyvenv.cfg))
+made_at = $(filter %/$(1),$(file <$(1)/pyvenv.cfg))
 MOVED := $(strip $(foreach folder,$(patsubst %/pyvenv.cfg,%,$(wildcard $(ENVIRONMENTS:=/pyvenv.cfg))), \
 	$(if $(filter-out $(CURDIR)/$(folder),$(call made_at,$(folder))),$(folder))))
 ifneq ($(MOVED),)
