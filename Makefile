@@ -36,6 +36,20 @@ ifneq ($(words $(CURDIR)),1)
 $(error $(CURDIR): Snakemake cannot run scripts from a path with a space: move the checkout)
 endif
 
+# The programs of an environment contain the path at which it was made, and so does the installed package. In a checkout
+# that was moved or copied they are missing, or run the sources of the other one.
+ENVIRONMENTS := .venv .venv-oldest .venv-benchmark .venv-mutants
+made_at = $(filter %/$(1),$(file <$(1)/pyvenv.cfg))
+MOVED := $(strip $(foreach folder,$(patsubst %/pyvenv.cfg,%,$(wildcard $(ENVIRONMENTS:=/pyvenv.cfg))), \
+	$(if $(filter-out $(CURDIR)/$(folder),$(call made_at,$(folder))),$(folder))))
+ifneq ($(MOVED),)
+.venv/study .venv-oldest/ready .venv-benchmark/ready .venv-mutants/ready: moved
+.PHONY: moved
+moved:
+	@echo "make: this checkout was moved or copied, and what was made at its old place is set up again: $(MOVED)"
+	@rm -rf $(MOVED)
+endif
+
 .venv/study: requirements/pip.lock requirements/study.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'
 	$(PYTHON) -m venv .venv
@@ -182,5 +196,5 @@ lock:  ## lock the versions of all requirements
 		$$name.in -o $$name.lock; done
 
 clean:  ## delete what `make` has made, except results/
-	rm -rf .venv .venv-benchmark .venv-oldest .venv-mutants build .snakemake src/*.egg-info src/burridge_knopoff/kernel/*.so \
+	rm -rf $(ENVIRONMENTS) build .snakemake src/*.egg-info src/burridge_knopoff/kernel/*.so \
 		src/burridge_knopoff/kernel/v[234]

@@ -133,7 +133,9 @@ def jobs_on(cores, jobs, seconds, parts):
     laws = sum(job.rule == "attractors_of_law" for job in jobs.values())
     processes = max(1, cores // max(1, laws))
     shared = {number: pieces for number, pieces in parts.items() if pieces}
-    wide = {number: replace(job, threads=processes if number in shared else 1) for number, job in jobs.items()}
+    wide = {
+        number: replace(job, threads=processes if number in shared else 1, cores=0.0) for number, job in jobs.items()
+    }
     took = dict(seconds)
     for number, pieces in shared.items():
         spared = sum((total - longest) * (1.0 / jobs[number].threads - 1.0 / processes) for total, longest in pieces)

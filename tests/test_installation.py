@@ -73,6 +73,79 @@ def test_without_a_compiler_make_says_in_one_line_what_to_install(repository, tm
     assert end.startswith("make: ***")
 
 
+#: Stands for Python: it makes an environment with itself as Python, and logs what it does there.
+PYTHON = """#!/bin/sh
+echo "$@" >>log
+if [ "$1 $2" = "-m venv" ]; then
+    mkdir -p "$3/bin"
+    cp "$0" "$3/bin/python"
+    echo "command = python -m venv $PWD/$3" >"$3/pyvenv.cfg"
+fi
+"""
+
+
+@pytest.fixture
+def checkout(repository, tmp_path):
+    """A checkout that was set up with PYTHON, with an environment for the mutants as well; the sources are linked."""
+    folder = tmp_path / "old"
+    folder.mkdir()
+    for name in ("Makefile", "setup.py", "pyproject.toml", "requirements", "src"):
+        (folder / name).symlink_to(repository / name)
+    (folder / "python").write_text(PYTHON)
+    (folder / "python").chmod(0o755)
+    make(folder, "setup", ".venv-mutants/ready")
+    return folder
+
+
+def make(folder, *targets):
+    """Run make in a checkout of PYTHON; return what it writes, and what PYTHON logs."""
+    outside = {key: value for key, value in os.environ.items() if not key.startswith("MAKE")}
+    (folder / "log").write_text("")
+    run = subprocess.run(["make", "PYTHON=./python", *targets], cwd=folder, env=outside, capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    return run.stdout, (folder / "log").read_text()
+
+
+def test_make_sets_up_once(checkout):
+    output, log = make(checkout, "setup", ".venv-mutants/ready")
+    assert log == ""
+    assert output.startswith("Next: source .venv/bin/activate")
+
+
+@pytest.mark.parametrize("copied", [False, True])
+def test_a_checkout_that_was_moved_or_copied_is_set_up_again(checkout, copied):
+    """Its programs would be missing, or run the sources of the other one."""
+    moved = checkout.with_name("new")
+    subprocess.run(["cp" if copied else "mv", *["-a"] * copied, str(checkout), str(moved)], check=True)
+    for folder in (".venv", ".venv-mutants"):
+        (moved / folder / "bin/snakemake").write_text(f"#!{checkout}/.venv/bin/python\n")
+    (moved / ".venvs").mkdir()
+    (moved / ".venvs/pyvenv.cfg").write_text(f"home = x\ncommand = python -m venv {moved}/src\n")
+    output, log = make(moved, "help")
+    assert "moved" not in output
+    assert (moved / ".venv/bin/snakemake").exists()
+    output, log = make(moved, "setup", ".venv-mutants/ready")
+    (line,) = [line for line in output.splitlines() if "moved or copied" in line]
+    assert {".venv", ".venv-mutants"} < {*line.split()}
+    assert "-m venv .venv\n" in log
+    assert "--editable ." in log
+    for folder in (".venv", ".venv-mutants"):
+        assert (moved / folder / "bin/python").exists()
+        assert not (moved / folder / "bin/snakemake").exists()
+    # Only what make makes is made again.
+    assert (moved / ".venvs/pyvenv.cfg").exists()
+    assert (moved / "src/burridge_knopoff").is_dir()
+    assert make(moved, "setup", ".venv-mutants/ready")[1] == ""
+    if copied:
+        assert make(checkout, "setup", ".venv-mutants/ready")[1] == ""
+
+
+def test_an_environment_of_another_program_is_left_alone(checkout):
+    """That of uv or virtualenv does not tell where it was made."""
+    (checkout / ".venv/pyvenv.cfg").write_text("home = /usr/bin\nuv = 0.5\n")
+    assert make(checkout, "setup")[1] == ""
+
+
 def test_building_for_another_environment_touches_nothing_in_the_tree(installed):
     """This includes its kernel, which a running study may use, and the record of its build."""
     assert installed.touched == []

@@ -28,7 +28,7 @@ from burridge_knopoff.attractors.settings import SEARCH
 from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.model.fields import fields_of
-from burridge_knopoff.model.initial import PaperState
+from burridge_knopoff.model.initial import ContinuedState, PaperState
 from burridge_knopoff.model.ranges import Interval, Number, OneOf, Several, TrueOrFalse, Whole
 from burridge_knopoff.motion.chain_settings import Sample
 from burridge_knopoff.motion.settings import MOTION
@@ -53,8 +53,13 @@ def classes():
     settings_classes = [
         kind for kind in members if dataclasses.is_dataclass(kind) and kind.__module__.startswith("burridge_knopoff")
     ]
+    # The numbers of a state of a run have no range.
     return sorted(
-        (kind for kind in settings_classes if kind.__name__.endswith("Settings") or has_ranges(kind)),
+        (
+            kind
+            for kind in {*settings_classes} - {ContinuedState}
+            if kind.__name__.endswith("Settings") or has_ranges(kind)
+        ),
         key=lambda kind: kind.__name__,
     )
 

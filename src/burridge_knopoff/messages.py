@@ -122,6 +122,10 @@ def _parts(value: Any) -> Iterator[str]:
         yield f"{'-' * (value < 0)}0x{abs(value) >> (abs(value).bit_length() - 4 * LONGEST):x}..."
     elif getattr(getattr(value, "dtype", None), "kind", "") == "O":
         yield f"{kind.__name__} of objects"
+    elif hasattr(value, "__array__") and kind is not np.ndarray and np.ndim(value) > 0:
+        yield f"{kind.__name__} of shape {np.shape(value)}"
+    elif isinstance(value, Iterator):
+        yield f"a {kind.__name__}"
     else:
         yield _written(value)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from inspect import getattr_static
 from typing import Any, TypeVar
@@ -54,11 +54,31 @@ def number_in(text: str) -> int | float | None:
         return None
 
 
+def is_sequence(values: Any) -> bool:
+    """Return whether a value is a sequence: a list, a tuple, or an array of numpy, pandas or xarray with a dimension.
+
+    What has no order (a set), is read only once (a generator) or has keys is none, nor are a text and bytes.
+    """
+    if isinstance(values, Sequence):
+        return not isinstance(values, str | bytes | bytearray | memoryview)
+    return hasattr(values, "__array__") and not isinstance(values, Mapping | type) and np.ndim(values) > 0
+
+
+def elements(values: Any) -> list[Any] | None:
+    """Return the elements of a sequence, those of a matrix by rows; None for anything else, see `is_sequence`."""
+    if not is_sequence(values):
+        return None
+    # A table of pandas iterates over its columns, a row of a numpy.matrix is a matrix, and `asarray` would unmask.
+    if hasattr(values, "__array__") and not isinstance(values, np.ma.MaskedArray):
+        values = np.asarray(values)
+    return list(values)
+
+
 def real_array(values: Any, key: str) -> np.ndarray:
     """Return real numbers of any shape, NaN where masked; raises ValueError, one line, for anything else."""
     try:
         array = np.ma.asarray(values)
-    except ValueError:
+    except (TypeError, ValueError):
         array = np.ma.asarray(None)
     if array.dtype.kind not in "iuf":
         raise refusal(key, values, "an array of numbers")
@@ -99,6 +119,7 @@ def instance_of(value: Any, kind: type[_T], key: str) -> _T:
 
 def each_instance_of(values: Any, kind: type[_T], key: str) -> list[_T]:
     """Return a list of values if all are instances of a class; raises ValueError, one line, otherwise."""
-    if isinstance(values, str | Mapping) or not isinstance(values, Iterable):
+    items = elements(values)
+    if items is None:
         raise refusal(key, values, f"a list, each {kind.__name__}")
-    return [instance_of(value, kind, f"{key}[{number}]") for number, value in enumerate(values)]
+    return [instance_of(value, kind, f"{key}[{number}]") for number, value in enumerate(items)]

@@ -106,7 +106,7 @@ class LogHandler(LogHandlerBase):
                     self._next_line = job.begin + PACE
                     self._write(progress_line(run, job.begin))
             case LogEvent.JOB_FINISHED if job := run.jobs.get(record.job_id):
-                job.seconds, job.state = measured_seconds(job.benchmark, job.threads), DONE
+                job.seconds, job.state = measured_seconds(job.benchmark, job.cores), DONE
             # Snakemake 9.22 reports each failure twice.
             case LogEvent.JOB_ERROR if (job := run.jobs.get(record.jobid)) and job.state != FAILED:
                 job.state, job.log = FAILED, record.log or []

@@ -1,6 +1,6 @@
 """Durations of jobs: the mean of the finished jobs of a rule in this run or the last one, otherwise the shipped value.
 
-`durations.json`, written by `benchmarks/durations.py`, contains for each rule the seconds of a job, times its threads,
+`durations.json`, written by `benchmarks/durations.py`, contains for each rule the seconds of a job, times its cores,
 and its bytes in a small and in a large study.
 """
 
@@ -18,15 +18,15 @@ from burridge_knopoff.study.chunks import chunks
 from burridge_knopoff.study.study import Study, all_points
 
 FILE = Path(__file__).with_name("durations.json")
-#: {rule: one or two rows of the work of a job, its seconds times its threads, and its bytes, sorted by work}
+#: {rule: one or two rows of the work of a job, its seconds times its cores, and its bytes, sorted by work}
 SHIPPED: dict[str, list[list[float]]] = json.loads(FILE.read_text(encoding="utf-8"))
 #: The rows of a rule that was never measured.
 _OTHERS = [[median(column) for column in zip(*(rows[0] for rows in SHIPPED.values()), strict=True)]]
 
 
-def measured_seconds(benchmark: str | Path, threads: int) -> float | None:
-    """Return the duration of a job in seconds, times its threads, from its benchmark file; None if it has none."""
-    return next((wall * threads for wall, *_ in job_costs(Path(benchmark))), None)
+def measured_seconds(benchmark: str | Path, cores: float) -> float | None:
+    """Return the duration of a job in seconds, times its cores, from its benchmark file; None if it has none."""
+    return next((wall * cores for wall, *_ in job_costs(Path(benchmark))), None)
 
 
 @dataclass(frozen=True)
@@ -34,14 +34,14 @@ class Durations:
     """Durations of the jobs of a study.
 
     work : {rule: amount of work of one of its jobs}, see `work_of`
-    last : {rule: seconds of each of its jobs in the last run, times their threads}
+    last : {rule: seconds of each of its jobs in the last run, times their cores}
     """
 
     work: Mapping[str, float] = field(default_factory=dict)
     last: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
     def shipped_cost(self, rule: str) -> tuple[float, float]:
-        """Return the shipped seconds of a job, times its threads, and its bytes, interpolated between its two rows."""
+        """Return the shipped seconds of a job, times its cores, and its bytes, interpolated between its two rows."""
         first, *others = SHIPPED.get(rule, _OTHERS)
         last, work = [*others, first][0], self.work.get(rule, self.work.get("all points", 0.0))
         share = max(0.0, (work - first[0]) / (last[0] - first[0])) if others else 0.0
@@ -49,9 +49,9 @@ class Durations:
         return seconds, size
 
     def expected(self, rules: Collection[str], finished: Mapping[str, Sequence[float]]) -> dict[str, float]:
-        """Return {rule: expected seconds of a job, times its threads}.
+        """Return {rule: expected seconds of a job, times its cores}.
 
-        finished : {rule: seconds of each job that has finished in this run, times its threads}
+        finished : {rule: seconds of each job that has finished in this run, times its cores}
         """
         known = {**self.last, **finished}
         shipped = sum(len(jobs) * self.shipped_cost(rule)[0] for rule, jobs in known.items())

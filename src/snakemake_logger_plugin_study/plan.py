@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections import defaultdict
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -9,6 +10,7 @@ from typing import Any
 
 from snakemake.logging import logger
 
+from burridge_knopoff.running.threads import available_cores
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.study import Study
 from snakemake_logger_plugin_study.durations import Durations, measured_seconds, work_of
@@ -47,9 +49,14 @@ class Plan:
     def look_ahead(self) -> Run:
         """Return the run of the planned jobs, those that make files, with their known durations."""
         assert self.study is not None
-        dag, cores, last = self.workflow.dag, self.workflow.resource_settings.cores or 1, defaultdict(list)
+        dag, last = self.workflow.dag, defaultdict(list)
+        requested = self.workflow.resource_settings.cores or 1
+        available = available_cores() if self.workflow.local_exec else sys.maxsize
+        cores = min(requested, available)
+        # If more are requested than there are, each thread of a busy run has a share of a core.
+        share = cores / requested
         for job in dag.jobs:
-            if job.benchmark and (seconds := measured_seconds(job.benchmark, int(job.threads))) is not None:
+            if job.benchmark and (seconds := measured_seconds(job.benchmark, share * job.threads)) is not None:
                 last[job.rule.name].append(seconds)
         order = {rule.name: place for place, rule in enumerate(self.workflow.rules)}
         numbers = {job: dag.jobid(job) for job in dag.needrun_jobs(exclude_finished=False) if job.output}
@@ -58,7 +65,8 @@ class Plan:
                 " ".join([job.rule.name, *(f"{name}={value}" for name, value in job.wildcards_dict.items())]),
                 self.stages.get(job.rule.name, job.rule.name),
                 job.rule.name,
-                threads=int(job.threads),
+                threads=min(int(job.threads), available),
+                cores=share * job.threads,
                 needs=frozenset(numbers[need] for need in dag.dependencies[job] if need in numbers),
                 benchmark=str(job.benchmark or ""),
             )

@@ -19,16 +19,20 @@ CERTAIN = 0.25
 class Job:
     """A job that makes files: its plan and, from `state` on, its progress.
 
+    threads : number of cores that it can use
+    cores : number of cores that it has while all requested cores are busy: fewer if more are requested than there
+        are; by default as many as threads
     needs : numbers of the jobs on which it depends
     benchmark : the file with its duration, written by Snakemake
     begin, since : when it began, by a clock that is never set, and by the clock of its files
-    seconds : its duration times its threads; None if it has not finished or was not measured
+    seconds : its duration times its cores; None if it has not finished or was not measured
     """
 
     name: str
     stage: str
     rule: str = ""
     threads: int = 1
+    cores: float = 0.0
     needs: frozenset[int] = frozenset()
     benchmark: str = ""
     state: str = WAITING
@@ -39,9 +43,12 @@ class Job:
     output: Sequence[str] = ()
     log: Sequence[str] = ()
 
+    def __post_init__(self) -> None:
+        self.cores = self.cores or self.threads
+
     def work(self, expected: float, now: float) -> tuple[float, float]:
         """Return its CPU time in seconds, of the whole job and of the part that is done."""
-        whole, taken = expected if self.seconds is None else self.seconds, (now - self.begin) * self.threads
+        whole, taken = expected if self.seconds is None else self.seconds, (now - self.begin) * self.cores
         if self.state != RUNNING:
             return whole, whole if self.state == DONE else 0.0
         # It takes no less than expected: what an earlier run has left in the cache is done at once.

@@ -97,7 +97,7 @@ def test_a_run_that_does_not_complete_is_included():
         ({"a": [0.1, 0.2, 0.1]}, "a: got 0.1 twice"),
         ({"a": [0.1, "x"]}, "a: 'x'"),
         ({"a": [[0.1, 0.2], [0.3, 0.4]]}, "a: [[0.1, 0.2], [0.3, 0.4]]"),
-        ({"v": np.array([[0.1]])}, "v: [[0.1]]"),
+        ({"v": np.array([[0.1]])}, "v: array([[0.1]])"),
         ({"a": [0.1, 2.0], "solver": "map"}, "a = 2.0: solver: 'map'"),
         ({"cores": 0}, "cores: 0"),
         ({"colour": "blue"}, "colour: not a setting"),

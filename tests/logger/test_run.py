@@ -51,6 +51,18 @@ def test_the_time_left_is_that_of_all_work_or_of_its_longest_chain(jobs, cores, 
     assert run(*jobs, cores=cores).time_left(0.0) == seconds
 
 
+def test_threads_without_a_core_of_their_own_share_those_that_are_there():
+    """Four are requested, two are there: a job has half a core while others run, and a core of its own at the end."""
+    crowded = [short(cores=0.5) for _ in range(8)]
+    assert run(*crowded, cores=2).time_left(0.0) == 4.0
+    assert run(job("long", cores=0.5), cores=2).time_left(0.0) == 10.0
+    crowded[0].state, crowded[0].begin = RUNNING, 1.0
+    assert run(*crowded, cores=2).time_left(2.0) == 3.75
+    # Of the six seconds that it took, three were spent on it.
+    crowded[0].state, crowded[0].seconds = DONE, 6.0 * crowded[0].cores
+    assert run(*crowded, cores=2).time_left(9.0) == 10.5
+
+
 def test_finished_jobs_come_before_the_last_run_and_that_before_the_tree():
     last = {"short": [4.0, 2.0]}
     assert run(short(), last=last).time_left(0.0) == 3.0

@@ -114,3 +114,47 @@ def test_runs_continue_from_their_events(solver, v):
         pushed = perturb(state, 1e-3, generator)
         assert (pushed.velocity >= 0.0).all()
         runner.begin(pushed)
+
+
+@pytest.mark.parametrize("blocks", [3, 23, 24])
+@pytest.mark.parametrize("solver", ["series", "rk4"])
+def test_a_run_continues_from_wherever_it_went(blocks, solver):
+    """Only a state that a user writes has a range, up to 1e6; blocks accelerate without limit under the linearized law.
+
+    The two parts are the whole run to the bit, with a single group of blocks (23) and with local ones (24).
+    """
+    begin = InitialState("own", tuple(np.linspace(-0.9, -0.99, blocks)), 0.1)
+    options = {"solver": solver, "step": 2.0**-7, "transient": 0.0, "batches": 2}
+    whole = simulate("linearized", 6.0, begin, window=3.5, **options)
+    first = simulate("linearized", 6.0, begin, window=3.25, **options)
+    assert first.status == "completed"
+    assert np.abs(first.final.position).max() > 1e6
+    rest = simulate(first.model, initial=first.final, window=0.25, **options)
+    assert rest.status == "completed"
+    assert np.array_equal(rest.final.vector(), whole.final.vector())
+    data = rest.to_dataset()
+    assert np.array_equal(data.initial_position, first.final.position + first.model.sliding_offset)
+    assert np.array_equal(data.initial_velocity, first.final.velocity)
+    again = simulate(first.model, initial=rest.initial, window=0.25, **options)
+    assert np.allclose(again.final.vector(), whole.final.vector(), rtol=1e-9)
+    assert first.catalogue(0.25).status.name == "COMPLETED"
+    # Further on it diverges, and says so.
+    assert "diverged at tau" in repr(simulate(first.model, initial=first.final, window=50.0, **options))
+
+
+def test_blocks_on_soft_springs_are_farther_away_than_states_of_a_user_may_be():
+    """A spring of strength 1e-6 that is stretched by 5e6 does not overcome static friction of 10."""
+    model = Model(Chain(2, coupling=1e-6, pulling=1e-6, threshold=10.0), law_of("linearized", 0.08))
+    rest = ChainState(np.full(2, 5e6), np.zeros(2), np.ones(2, bool))
+    run = simulate(model, initial=rest, transient=0, window=50, lyapunov_exponents=0)
+    assert run.status == "completed"
+    assert simulate(model, initial=run.final, transient=0, window=50, lyapunov_exponents=0).status == "completed"
+    with refused("position[0]: ", "expected a number between -1e+06 and 1e+06"):
+        InitialState("own", tuple(run.final.position + model.sliding_offset), 0.0)
+
+
+def test_a_state_may_be_written_as_lists():
+    state = MODEL.begin(InitialState("own", (-0.9, -1.1, -1.2), (0.1, 0.0, 0.2)), "tested")
+    written = ChainState(state.position.tolist(), state.velocity.tolist(), state.stuck.tolist())
+    ends = [simulate(MODEL, initial=at, transient=0, window=5).final.vector() for at in (state, written)]
+    assert np.array_equal(*ends)

@@ -65,7 +65,7 @@ BAD_CHANGES = [
         ["basins.tiles: 1", "numbers"],
     ),
     ({"phases": {"samples": 10**5, "amplitude": [*range(1, 50)]}}, ["phases.samples: 100000", "numbers"]),
-    ({"trajectory": 1e6}, ["trajectory_sampling: 0.05", "samples"]),
+    ({"trajectory": 1e6}, ["trajectory_sampling: 0.05", "at least 0.1 over a time of 1e+06"]),
     ({"initial": {1: PAIR}}, ["initial: got 1, expected letters"]),
     ({"events": "none"}, ["events: 'none'", "window | all"]),
     ({"agreement ": {}}, ["'agreement ': unknown key"]),
@@ -123,6 +123,10 @@ BAD_CHANGES = [
     ({"solvers": {"a": []}}, ["solvers.a: []", "at least 1"]),
     ({"solvers": {"a": [0.1, 0.1]}}, ["solvers.a: [0.1, 0.1]", "each value once"]),
     ({"solvers": {"steps": 0.1}}, ["solvers.steps: unknown key", "step"]),
+    (
+        {"chain": {"coupling": 1e6}},
+        ["solvers.step: 0.0025", "at most 0.000125 in this chain: longer steps miss events, or without: [solvers]"],
+    ),
     ({"catalogue": {"a": [0.0801]}}, ["catalogue.a: 0.0801", "grid"]),
     ({"catalogue": {"low": 2.0, "high": 1.0}}, ["catalogue.high: 1.0", "more than low"]),
     (

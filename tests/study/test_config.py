@@ -197,6 +197,22 @@ def test_a_thousand_values_are_checked_fast():
     assert time.process_time() - begin < 5.0
 
 
+@pytest.mark.parametrize("key", ["transient", "window"])
+def test_a_run_too_long_for_the_comparison_is_refused_by_the_key_that_made_it_so(key):
+    """The step of the comparison has a default; each of the remedies that the line names is one."""
+    long = {key: 2e7}
+    with refused(f"{key}: 20000000.0", "a shorter run, solvers.step of at least 0.0061, or without: [solvers]"):
+        load(**long)
+    load(**long, solvers={"step": 0.0061})
+    load(**long, without=["solvers"])
+    load(**{key: 5e6})
+    with refused("solvers.step: 0.003", "at least 0.0061 in a run of 2.000", "or without: [solvers]"):
+        load(**long, solvers={"step": 0.003})
+    # No step is both short enough for the chain and long enough for the run.
+    with refused(f"{key}: 600000000.0", "expected a shorter run, or without: [solvers]"):
+        load(**{key: 6e8}, sampling=1000)
+
+
 @pytest.mark.parametrize(
     ("changes", "expected"),
     [

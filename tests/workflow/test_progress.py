@@ -201,3 +201,22 @@ def test_without_hooks(study):
     output = study.ok("--no-hooks", POINTS[0])
     assert "study tiny" not in output
     assert (study.folder / POINTS[0]).exists()
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="no choice of the cores of a process")
+def test_an_estimate_counts_the_cores_that_are_there(study):
+    """More cores than that make no job faster."""
+    core = {min(os.sched_getaffinity(0))}
+    estimates = []
+    for cores in (1, 4):
+        run = subprocess.run(
+            study.command("-n", cores=cores),
+            cwd=study.folder,
+            env=study.environment(),
+            capture_output=True,
+            text=True,
+            preexec_fn=lambda: os.sched_setaffinity(0, core),
+        )
+        estimates += re.findall("^a run takes .* on 1 core .*", run.stdout + run.stderr, re.MULTILINE)
+    assert len(estimates) == 2
+    assert estimates[0] == estimates[1]

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from burridge_knopoff.laws.formula import FormulaError, compile_formula, formula_names
 from burridge_knopoff.laws.tape import Tape
 from burridge_knopoff.messages import format_value, full_key, refusal
-from burridge_knopoff.values import Unchanging, instance_of, real_number
+from burridge_knopoff.values import Unchanging, instance_of, real_array, real_number
 
 #: A law must be analytic up to this speed. Blocks stay slower if springs and thresholds are about 1.
 MAX_SPEED = 10.0
@@ -147,12 +147,12 @@ class Law(Unchanging):
 
     def __call__(self, speed: ArrayLike) -> np.ndarray:
         """Return Φ at speeds U' ≥ 0, elementwise."""
-        speed = np.asarray(speed, dtype=float)
+        speed = real_array(speed, "speed")
         return _of_shape(self.tape.run(speed)[0], speed.shape)
 
     def slope(self, speed: ArrayLike) -> np.ndarray:
         """Return dΦ/dU' at speeds U' ≥ 0, elementwise; negative where friction weakens."""
-        speed = np.asarray(speed, dtype=float)
+        speed = real_array(speed, "speed")
         return _of_shape(self.tape.run(speed)[1], speed.shape)
 
     @property

@@ -16,7 +16,7 @@ from burridge_knopoff.catalogue.slope import Slope, fit_slope
 from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.status import Status, early_end
-from burridge_knopoff.values import real_array
+from burridge_knopoff.values import is_sequence, real_array
 
 if TYPE_CHECKING:
     import xarray
@@ -90,7 +90,7 @@ class Catalogue(SlipEvents):
         return batch_index(self.time, self.begin_time, self.end_time)
 
     def _column(self, values: ArrayLike, name: str) -> np.ndarray:
-        is_mask = np.asanyarray(values).dtype == bool
+        is_mask = is_sequence(values) and np.asanyarray(values).dtype == bool
         column = real_array(np.asanyarray(values, dtype=int) if is_mask else values, name)
         if column.shape != self.time.shape:
             raise refusal(name, column.shape, f"shape {self.time.shape}, a value for each event")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from burridge_knopoff.model.initial import PAPER_STATES, STATE_NAME, InitialStat
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.cost import cost_note, is_stiff
 from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.values import elements, is_sequence
 
 #: An initial state: minus or plus, an `InitialState`, {"position": …, "velocity": …}, or (position, velocity).
 Initial = str | InitialState | Mapping[str, Any] | Sequence[Sequence[float]] | np.ndarray
@@ -45,22 +46,11 @@ def _state(initial: str | Mapping[str, Any] | Sequence[Sequence[float]] | np.nda
     if isinstance(initial, str):
         return initial_state(initial)
     if isinstance(initial, Mapping):
-        numbers = {key: _plain(value) for key, value in initial.items()}
-    else:
-        pair = _plain(initial)
-        lists = [_plain(values) for values in pair] if isinstance(pair, list) else []
-        if len(lists) != 2 or not all(isinstance(values, list) for values in lists):
-            raise ValueError(f"initial: got {format_value(initial)}, expected {_FORMS}, with one number per block")
-        numbers = dict(zip(("position", "velocity"), lists, strict=True))
-    return InitialState(**_KEYS.form(numbers, "initial"))
-
-
-def _plain(values: Any) -> Any:
-    """Return a sequence or an array as a list, anything else unchanged."""
-    if hasattr(values, "__array__"):
-        # Masked values become None, which every range refuses.
-        return np.asanyarray(values).tolist()
-    return list(values) if isinstance(values, Iterable) and not isinstance(values, str | Mapping) else values
+        return InitialState(**_KEYS.form(initial, "initial"))
+    pair = elements(initial) or []
+    if len(pair) != 2 or not all(map(is_sequence, pair)):
+        raise ValueError(f"initial: got {format_value(initial)}, expected {_FORMS}, with one number per block")
+    return InitialState(**_KEYS.form(dict(zip(("position", "velocity"), pair, strict=True)), "initial"))
 
 
 def given_model(

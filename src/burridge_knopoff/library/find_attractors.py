@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from typing import Any, Unpack
 
 import numpy as np
@@ -17,7 +17,7 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import STARTS, Model
 from burridge_knopoff.model.ranges import OneOf
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
-from burridge_knopoff.values import instance_of
+from burridge_knopoff.values import elements, instance_of
 
 
 @show_settings(SearchSettings)
@@ -27,7 +27,7 @@ def find_attractors(
     settings: SearchSettings | None = None,
     motion: MotionSettings = MOTION,
     *,
-    starts: Iterable[Initial] = (),
+    starts: Sequence[Initial] = (),
     start: str = "moving",
     chain: Chain | None = None,
     v: float | None = None,
@@ -67,9 +67,10 @@ def find_attractors(
         a, settings = None, a
     instance_of(motion, MotionSettings, "motion")
     OneOf(STARTS).form(start, "start")
-    if isinstance(starts, str) or not isinstance(starts, Iterable):
+    given_starts = elements(starts)
+    if given_starts is None:
         raise refusal("starts", starts, "a list of initial states")
-    states = [given_state(state) for state in starts]
+    states = [given_state(state) for state in given_starts]
     # Without states and chain, the paper's chain.
     blocks = states[0].blocks if states else 3
     model = given_model(law, a, blocks, chain, v, contact)

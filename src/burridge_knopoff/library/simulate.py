@@ -57,7 +57,7 @@ def simulate(
     if not isinstance(law, Model) and a is None:
         a = law.a if isinstance(law, Law) else 0.08
     state = initial if isinstance(initial, ChainState) else given_state(initial)
-    blocks = len(state.position) if isinstance(state, ChainState) else state.blocks
+    blocks = state.position.size if isinstance(state, ChainState) else state.blocks
     model = given_model(law, a, blocks, chain, v, contact)
     chosen = settings_of(Settings, settings, by_name)
     warn_of_cost(model, state, chosen)

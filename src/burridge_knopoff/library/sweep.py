@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from itertools import chain as chained
@@ -32,7 +31,8 @@ from burridge_knopoff.model.ranges import Whole
 from burridge_knopoff.running.runner import LOCKSTEP_RUNS, run_together
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import prepare
-from burridge_knopoff.running.threads import map_in_threads
+from burridge_knopoff.running.threads import available_cores, map_in_threads
+from burridge_knopoff.values import elements, is_sequence
 
 if TYPE_CHECKING:
     import xarray
@@ -106,7 +106,7 @@ def sweep(
         runs = [job.result(status) for job, status in zip(jobs, statuses, strict=True)]
         return [(_common_values(point_values(run)), point_attributes(run)) for run in runs]
 
-    cores = cores or _cores()
+    cores = cores or available_cores()
     size = min(LOCKSTEP_RUNS, -(-len(points) // cores))
     results = list(chained.from_iterable(map_in_threads(cores, some, range(0, len(points), size))))
     import xarray
@@ -139,11 +139,12 @@ def _grid(
     law: Model | GivenLaw, parameters: Mapping[str, Any], blocks: int | None, chain: Chain | None, contact: str | None
 ) -> tuple[Model, dict[str, list[float]]]:
     """Return the model with all single-valued parameters, and the values of those given as sequences."""
-    arrays = {name: np.asanyarray(value, dtype=object) for name, value in parameters.items()}
-    axes: dict[str, list[float]] = {name: array.tolist() for name, array in arrays.items() if array.ndim}
+    axes: dict[str, list[Any]] = {
+        name: values for name, value in parameters.items() if (values := elements(value)) is not None
+    }
     for name, values in axes.items():
-        if arrays[name].ndim > 1:
-            raise refusal(full_key("", name), values, "one number or a sequence of numbers")
+        if any(map(is_sequence, values)):
+            raise refusal(full_key("", name), parameters[name], "one number or a sequence of numbers")
         if not values:
             raise ValueError(f"{full_key('', name)}: got no value, expected at least one")
     single = {name: value for name, value in parameters.items() if name not in axes}
@@ -172,7 +173,3 @@ def _call_at(point: Mapping[str, float], function: Callable[..., _T], *arguments
     except (ValueError, MemoryError) as error:
         place = ", ".join(f"{name} = {value!r}" for name, value in point.items())
         raise type(error)(f"{place}: {error}" if place else str(error)) from error
-
-
-def _cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

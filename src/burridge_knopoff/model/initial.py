@@ -88,6 +88,13 @@ class PaperState(InitialState):
     """
 
 
+class ContinuedState(InitialState):
+    """The state of another run, from which a run continues: any numbers, since only a state of a user has a range."""
+
+    def __post_init__(self) -> None:
+        pass
+
+
 _PAPER_VELOCITY = (0.099, 0.1012, 0.1023)
 
 #: The paper's two initial states (Section III), which differ only in U_1(0).

@@ -16,7 +16,7 @@ from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.initial import PAPER_V, InitialState, PaperState
 from burridge_knopoff.model.parameters import set_parameters
 from burridge_knopoff.model.ranges import Number, OneOf, Text
-from burridge_knopoff.values import Unchanging, instance_of, read_only_copy
+from burridge_knopoff.values import Unchanging, instance_of, read_only_copy, real_array
 
 LAW_NAME = Text("small letters, digits and _, at most 32, a letter first", "[a-z][a-z0-9_]{0,31}")
 
@@ -226,6 +226,12 @@ class ChainState:
     time: float = 0.0
     # The solver of the run and the start of its last step. They are valid for this state only: `replace` drops them.
     last_step: Any = field(default=None, init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        for name in ("position", "velocity", "stuck"):
+            if type(value := getattr(self, name)) is not np.ndarray:
+                array = np.asarray(value, dtype=bool) if name == "stuck" else real_array(value, f"state.{name}")
+                object.__setattr__(self, name, array)
 
     def __repr__(self) -> str:
         return (

@@ -1,8 +1,8 @@
 """Ranges: the allowed values of a setting. A range converts a value to its form or rejects it, and describes itself.
 
-In its form a value has Python's types: 3 becomes 3.0 if the number need not be whole, and a list becomes a tuple. A
-rejected value raises a ValueError of one line, `key: got X, expected Y`, with the key of the part at fault, such as
-`initial.minus.position[1]`.
+In its form a value has Python's types: 3 becomes 3.0 if the number need not be whole, and a list, an array or any other
+sequence (`values.is_sequence`) becomes a tuple. A rejected value raises a ValueError of one line, `key: got X, expected
+Y`, with the key of the part at fault, such as `initial.minus.position[1]`.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from burridge_knopoff.messages import full_key, refusal, suggestion
-from burridge_knopoff.values import real_number, scalar
+from burridge_knopoff.values import elements, real_number, scalar
 
 #: Means no limit, except that numbers must be finite.
 HUGE = 1e300
@@ -132,7 +132,7 @@ class Text(Range):
 
 @dataclass(eq=False, repr=False)
 class Several(Range):
-    """A list of `least` to `most` values; `distinct`: no value may occur twice."""
+    """A list of `least` to `most` values, or any other sequence; `distinct`: no value may occur twice."""
 
     element: Range
     least: int = 0
@@ -140,9 +140,10 @@ class Several(Range):
     distinct: bool = False
 
     def _fit(self, value: Any, key: str) -> tuple[Any, ...] | None:
-        if not isinstance(value, list | tuple | np.ndarray) or getattr(value, "ndim", 1) == 0:
+        values = elements(value)
+        if values is None:
             return None
-        items = tuple(self.element.form(item, f"{key}[{i}]") for i, item in enumerate(value))
+        items = tuple(self.element.form(item, f"{key}[{i}]") for i, item in enumerate(values))
         fits = self.least <= len(items) <= self.most and not (self.distinct and len(set(items)) < len(items))
         return items if fits else None
 

@@ -18,7 +18,7 @@ from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form, reduced_orbit
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, begin_branch, line_of
-from burridge_knopoff.values import instance_of, real_number
+from burridge_knopoff.values import elements, instance_of, real_number
 
 # Distance, for v = 0.1 in the chain's own units, within which an orbit must return to its mirror image, or to itself
 # after half its period, to be about to become more symmetric or to halve its period.
@@ -146,13 +146,10 @@ def follow(
 
 def interval_ends(interval: Any) -> tuple[float, float]:
     """Return the ends of an interval; raises ValueError, one line, if it is not an interval."""
-    try:
-        low, high = (real_number(value) for value in interval)
-    except (TypeError, ValueError):
-        low = high = math.nan
-    if not low <= high:
+    ends = [real_number(end) for end in elements(interval) or ()]
+    if len(ends) != 2 or not ends[0] <= ends[1]:
         raise refusal("interval", interval, "(low, high) with low ≤ high")
-    return low, high
+    return ends[0], ends[1]
 
 
 def _passed_orbit(first: BranchOrbit, second: BranchOrbit) -> PeriodicOrbit | None:

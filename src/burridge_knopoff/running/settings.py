@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -24,6 +25,9 @@ DURATION = Number(0.0, LONGEST)
 TIME = Number(0.0, LONGEST, above=True)
 INTERVAL = Number(1e-6, LONGEST)
 
+#: Limit on the number of samples of J, and of positions and velocities, in a run.
+MOST_SAMPLES = 1e7
+
 #: Limit on the number of rk4 steps times the number of blocks: about an hour of computing time.
 MOST_STEPS = 1e10
 
@@ -34,6 +38,11 @@ DEFAULT_EXPONENTS = 3
 LONGEST_STEP = 0.25
 
 
+def shortest_step(duration: float, chain: Chain) -> float:
+    """Return the shortest fixed step of a run of this duration, rounded to two digits."""
+    return _rounded_up(duration * chain.blocks / MOST_STEPS)
+
+
 def check_step(step: float, longest: float, duration: float, chain: Chain) -> None:
     """Raise ValueError if a fixed step is too long for a chain, or too short for a duration.
 
@@ -42,7 +51,14 @@ def check_step(step: float, longest: float, duration: float, chain: Chain) -> No
     if step > (longest := longest / chain.highest_rate):
         raise refusal("step", step, f"at most {longest:.3g} in this chain: longer steps miss events")
     if duration * chain.blocks > MOST_STEPS * step:
-        raise refusal("step", step, f"at most {MOST_STEPS / chain.blocks:.3g} steps in the whole run")
+        shortest = shortest_step(duration, chain)
+        raise refusal("step", step, f"at least {shortest:g} in a run of {duration:g}, or a shorter run")
+
+
+def _rounded_up(value: float) -> float:
+    """Return the next number of two digits, so that a limit in a message is allowed."""
+    digits = 1 - math.floor(math.log10(value))
+    return round(math.ceil(value * 10.0**digits) / 10.0**digits, digits)
 
 
 @settings
@@ -97,12 +113,10 @@ class Settings:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        for key, samples in (
-            ("sampling", self.duration / self.sampling),
-            ("trajectory_sampling", self.trajectory / self.trajectory_sampling),
-        ):
-            if samples > 1e7:
-                raise refusal(key, getattr(self, key), "at most 1e7 samples in a run")
+        for key, duration in (("sampling", self.duration), ("trajectory_sampling", self.trajectory)):
+            if duration > MOST_SAMPLES * (interval := getattr(self, key)):
+                least = _rounded_up(duration / MOST_SAMPLES)
+                raise refusal(key, interval, f"at least {least:g} over a time of {duration:g}, or a shorter time")
 
     def check_chain(self, chain: Chain) -> None:
         """Raise ValueError if the settings do not fit the chain or exceed the limits of a run."""

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from burridge_knopoff.kernel._core import Exponents
-from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.initial import ContinuedState, InitialState
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.running.runner import Runner, new_observer
+from burridge_knopoff.running.runner import Runner, check_state, new_observer
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.settling import LEVELS
 from burridge_knopoff.running.status import Status
@@ -66,8 +66,9 @@ def prepare(
     settings = Settings() if settings is None else settings
     settings.check_chain(model.chain)
     if isinstance(initial, ChainState):
-        begun = initial
-        initial = InitialState("continued", tuple(begun.position + model.sliding_offset), tuple(begun.velocity))
+        check_state(model, initial)
+        begun, position = initial, initial.position + model.sliding_offset
+        initial = ContinuedState("continued", tuple(position.tolist()), tuple(begun.velocity.tolist()))
     else:
         begun = model.begin(initial, settings.start)
     runner = _runner(model, settings, begun.time, section_only, stops_only)

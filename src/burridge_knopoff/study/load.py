@@ -96,8 +96,7 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
             is_quasistatic(loading, study.model(law, study.grid[name]), filled["solver"][law])
     for law in study.laws if has_springs and "solvers" not in study.omitted_stages else ():
         for solver in study.other_solvers(law):
-            with rules.error_prefix("solvers."):
-                study.settings(law, solver).check_chain(chain)
+            rules.check_comparison(study.settings(law, solver), chain, "step" in config.get("solvers", {}))
     rules.check_jobs(filled, study.blocks, study.omitted_stages)
     rules.leave_out(filled, study.omitted_stages)
     return study

@@ -22,7 +22,7 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.parameters import plain_name, set_parameters
 from burridge_knopoff.model.ranges import OneOf, Range, Several
 from burridge_knopoff.provenance.files import LONGEST_NAME
-from burridge_knopoff.running.settings import SOLVERS
+from burridge_knopoff.running.settings import LONGEST_STEP, SOLVERS, Settings, shortest_step
 from burridge_knopoff.study.config import SOME_VALUES
 from burridge_knopoff.study.grid import MAXIMUM_POINTS, values_of
 from burridge_knopoff.study.paper import PAPER_BASINS, PAPER_COMPARED, PAPER_PHASES
@@ -188,6 +188,19 @@ def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int,
         for a in values:
             if a not in grid:
                 raise refusal(key, a, "a value of the grid")
+
+
+def check_comparison(settings: Settings, chain: Chain, sets_step: bool) -> None:
+    """Check the settings with which another solver repeats runs; sets_step : whether the config has `solvers.step`."""
+    try:
+        settings.check_chain(chain)
+    except ValueError as error:
+        least = shortest_step(settings.duration, chain)
+        if sets_step or settings.step >= least or settings.solver != "rk4":
+            raise ValueError(f"solvers.{error}, or without: [solvers]") from error
+        key = "transient" if settings.transient > settings.window else "window"
+        step = f", solvers.step of at least {least:g}" if least < LONGEST_STEP / chain.highest_rate else ""
+        raise refusal(key, getattr(settings, key), f"a shorter run{step}, or without: [solvers]") from error
 
 
 def fill_catalogue(config: dict[str, Any], grid: Collection[float]) -> None:
