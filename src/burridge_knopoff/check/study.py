@@ -225,7 +225,8 @@ def config_change(results: Path, record: dict[str, Any]) -> Finding | None:
     root = root_of(results)
     file, path = Path(record["config_file"]), root / record["config_file"]
     # A workflow that imports the study passes its config on; its Snakefile is on record.
-    option, snakefile, *_ = [*record["arguments"], "", ""]
+    words: list[str] = record["arguments"]
+    option, snakefile, *_ = [*words, "", ""]
     if option == "-s" and (root / snakefile).resolve() == path.resolve():
         return Finding("note", file, "imports the study; the config of the last run is checked")
     if not path.exists():
