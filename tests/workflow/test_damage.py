@@ -12,6 +12,7 @@ import pytest
 
 from burridge_knopoff.check.study import check_study
 from burridge_knopoff.dataset.summary import open_summary
+from burridge_knopoff.running.cache import _HEAD, _head
 from tests.check.damages import DAMAGES, POINT, cut, edit, noise_inside, rewrite
 from tests.forged import forge
 from tests.workflow.conftest import TINY, Study, copied
@@ -215,3 +216,22 @@ def test_files_of_other_sources_are_read_after_touching(copy):
     copy.ok("-R", "mean_distance", "figure_equilibrium", "--until", "mean_distance", "figure_equilibrium")
     reasons = {finding.path.name: finding.reason for finding in check_study(results).findings}
     assert all(reasons[name].startswith("was made by other sources") for name in ("equilibrium.nc", "a0.2000.nc"))
+
+
+def test_a_poisoned_cache_runs_nothing_and_the_result_is_the_same(copy):
+    """All files of the cache name a library and a function; their checksums agree."""
+    target = "results/tiny/attractors/linearized.nc"
+    content = (copy.folder / target).read_bytes()
+    (copy.folder / target).unlink()
+    poisoned = [path for path in (copy.folder / ".snakemake/study_cache").rglob("*") if path.is_file()]
+    for path in poisoned:
+        line, _, data = path.read_bytes()[_HEAD:].partition(b"\n")
+        top, objects = json.loads(line)
+        objects.append(["attributes", "os:system", {"evil": ["enum", "ctypes:cdll", "./evil.so"]}])
+        whole = json.dumps([top, objects]).encode() + b"\n" + data
+        path.write_bytes(_head(path.name, whole) + whole)
+    copy.ok(target)
+    assert (copy.folder / target).read_bytes() == content
+    log = (copy.folder / "results/tiny/logs/attractors/linearized.log").read_text()
+    assert 0 < log.count("not a result of this call, which is computed again") <= len(poisoned)
+    assert "from the cache" not in log
