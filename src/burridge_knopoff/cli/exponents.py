@@ -9,9 +9,8 @@ from burridge_knopoff.cli.options import add_model, add_settings, add_state, mod
 from burridge_knopoff.cli.output import print_lines
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MotionSettings
-from burridge_knopoff.running.derivative import none_because
 from burridge_knopoff.running.settings import Settings
-from burridge_knopoff.running.status import EXIT_CODE, Status, early_end
+from burridge_knopoff.running.status import EXIT_CODE, Status, early_end, none_because
 from burridge_knopoff.study.formatting import to_ascii, with_error
 
 DESCRIPTION = """Compute the Lyapunov exponents of the motion from an initial state, and classify the motion. For a

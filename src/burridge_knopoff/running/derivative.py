@@ -37,11 +37,6 @@ def missing_derivative(runner: Runner, *, mirror_symmetric: bool | None = None) 
     return ""
 
 
-def none_because(reason: str) -> str:
-    """Return the words that stand in place of exponents, with the `missing_derivative` if there is one."""
-    return f"none: {reason}: perturbations have no linear growth" if reason else "none"
-
-
 def _pair(blocks: tuple[int, int]) -> str:
     return f"blocks {blocks[0] + 1} and {blocks[1] + 1}"
 

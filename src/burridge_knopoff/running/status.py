@@ -26,3 +26,8 @@ def early_end(status: int, time: float) -> str:
     if status == Status.COMPLETED:
         return ""
     return f"the run did not complete: {STATUS_WORDS[status].replace('_', ' ')} at tau = {time:g}"
+
+
+def none_because(reason: str) -> str:
+    """Return the words that stand in place of exponents, with the `missing_derivative` if there is one."""
+    return f"none: {reason}: perturbations have no linear growth" if reason else "none"

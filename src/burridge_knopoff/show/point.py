@@ -12,8 +12,7 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.motion.kind import format_motion, motion_of_run
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.command import CHAIN_OPTIONS
-from burridge_knopoff.running.derivative import none_because
-from burridge_knopoff.running.status import early_end
+from burridge_knopoff.running.status import early_end, none_because
 from burridge_knopoff.show.formatting import list_numbers, quoted_history, wrap_lines
 from burridge_knopoff.show.result import Result
 from burridge_knopoff.study.formatting import format_count, to_ascii, with_error
