@@ -108,7 +108,8 @@ def test_the_statistics_are_those_of_the_events(study):
         assert part["event_count"] == len(magnitude) == part["magnitude_count"].sum()
         assert part["event_rate"] == len(magnitude) / 800.0
         assert part["magnitude_rate"].sum() * 0.5 == pytest.approx(part["event_rate"])
-        fit = fit_slope(magnitude, part["slope_low"].item(), part["slope_high"].item())
+        ends = part["slope_low"].item(), part["slope_high"].item()
+        fit = fit_slope(magnitude, *ends, time=events["time"].values)
         names = {"slope": fit.b, "slope_error": fit.error, "slope_count": fit.count, "slope_p_value": fit.p_value}
         assert {name: part[name].item() for name in names} == names
         assert part["block_event_count"].sum() == events["blocks"].sum()

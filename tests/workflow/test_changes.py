@@ -151,7 +151,11 @@ def test_every_key_has_a_case():
 @pytest.mark.parametrize(("changes", "roots"), quick_first(KEYS, 1), ids=["+".join(keys) for keys, _ in KEYS])
 def test_a_key_invalidates_only_what_uses_it(before, jobs, changes, roots):
     whole = [job for job in jobs if (job.rule, job.output) in before]
-    assert counts(before, changes) == jobs_after(whole, *roots, "report")
+    expected = jobs_after(whole, *roots, "report")
+    if "chain.coupling" in changes:
+        # A study of another chain has no claims of the paper.
+        del expected["claims"]
+    assert counts(before, changes) == expected
 
 
 @pytest.mark.parametrize(
