@@ -10,7 +10,7 @@ from typing import Any
 
 from snakemake.logging import logger
 
-from burridge_knopoff.running.threads import available_cores
+from burridge_knopoff.running.cores import available_cores
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.study import Study
 from snakemake_logger_plugin_study.durations import Durations, measured_seconds, work_of

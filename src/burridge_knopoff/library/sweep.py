@@ -28,10 +28,11 @@ from burridge_knopoff.model.parameters import (
     remarks_on_states,
 )
 from burridge_knopoff.model.ranges import Whole
+from burridge_knopoff.running.cores import available_cores
 from burridge_knopoff.running.runner import LOCKSTEP_RUNS, run_together
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import prepare
-from burridge_knopoff.running.threads import available_cores, map_in_threads
+from burridge_knopoff.running.threads import map_in_threads
 from burridge_knopoff.values import elements, is_sequence
 
 if TYPE_CHECKING:

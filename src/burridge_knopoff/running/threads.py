@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, TypeVar
@@ -10,11 +9,6 @@ from typing import Any, TypeVar
 from burridge_knopoff.kernel._core import StopFlag
 
 _T = TypeVar("_T")
-
-
-def available_cores() -> int:
-    """Return the number of cores on which this process may run."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def map_in_threads(threads: int, function: Callable[..., _T], *items: Iterable[Any]) -> list[_T]:
