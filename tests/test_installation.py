@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -74,13 +75,16 @@ def test_without_a_compiler_make_says_in_one_line_what_to_install(repository, tm
 
 
 #: Stands for Python: it makes an environment with itself as Python, and logs what it does there.
-PYTHON = """#!/bin/sh
-echo "$@" >>log
-if [ "$1 $2" = "-m venv" ]; then
-    mkdir -p "$3/bin"
-    cp "$0" "$3/bin/python"
-    echo "command = python -m venv $PWD/$3" >"$3/pyvenv.cfg"
-fi
+PYTHON = f"""#!{sys.executable}
+import os, shutil, sys
+with open("log", "a") as log:
+    print(*sys.argv[1:], file=log)
+if sys.argv[1:3] == ["-m", "venv"]:
+    folder = os.path.abspath(sys.argv[3])
+    os.makedirs(f"{{folder}}/bin", exist_ok=True)
+    shutil.copy(sys.argv[0], f"{{folder}}/bin/python")
+    with open(f"{{folder}}/pyvenv.cfg", "w") as settings:
+        print(f"command = python -m venv {{folder}}", file=settings)
 """
 
 
@@ -116,12 +120,15 @@ def test_make_sets_up_once(checkout):
 def test_a_checkout_that_was_moved_or_copied_is_set_up_again(checkout, copied):
     """Its programs would be missing, or run the sources of the other one."""
     moved = checkout.with_name("new")
-    subprocess.run(["cp" if copied else "mv", *["-a"] * copied, str(checkout), str(moved)], check=True)
+    if copied:
+        shutil.copytree(checkout, moved, symlinks=True)
+    else:
+        checkout.rename(moved)
     for folder in (".venv", ".venv-mutants"):
         (moved / folder / "bin/snakemake").write_text(f"#!{checkout}/.venv/bin/python\n")
     (moved / ".venvs").mkdir()
     (moved / ".venvs/pyvenv.cfg").write_text(f"home = x\ncommand = python -m venv {moved}/src\n")
-    output, log = make(moved, "help")
+    output, log = make(moved, "announce")
     assert "moved" not in output
     assert (moved / ".venv/bin/snakemake").exists()
     output, log = make(moved, "setup", ".venv-mutants/ready")

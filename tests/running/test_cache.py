@@ -9,7 +9,16 @@ from functools import partial
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, law_of
+from burridge_knopoff import (
+    Chain,
+    ChainState,
+    InitialState,
+    Model,
+    MotionKind,
+    SearchSettings,
+    law_of,
+    simulate,
+)
 from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.running import cache as module
 from burridge_knopoff.running.cache import cached_call
@@ -111,6 +120,16 @@ def test_a_written_value_is_read_back():
     assert again[-1][0] is again[-3] == MODEL
     assert type(again[10]) is np.float64
     assert math.copysign(1, again[2]) == -1
+
+
+def test_a_state_that_no_run_has_reached_is_read_back():
+    """It has no last step."""
+    span = {"transient": 10, "window": 10, "trajectory": 1, "event_window": 10}
+    state = MODEL.begin(InitialState("own", (-0.9, -1.1, -1.0), (0.1, 0.1, 0.1)), start="tested")
+    again = unpack(pack(state, [ChainState]), [ChainState])
+    assert again.last_step is None
+    runs = [simulate(MODEL, initial=at, **span).final for at in (state, again)]
+    assert np.array_equal(runs[0].position, runs[1].position)
 
 
 @pytest.mark.parametrize(

@@ -150,12 +150,13 @@ def _members(kind: type) -> Any:
 
 
 @cache
-def _field_names(kind: Any) -> set[str]:
-    return {field.name for field in fields(kind)}
+def _field_names(kind: Any) -> tuple[set[str], set[str]]:
+    """Return the fields of a dataclass that every object has, and all of them."""
+    return {field.name for field in fields(kind) if field.init}, {field.name for field in fields(kind)}
 
 
 def _empty_object(kind: type, names: Collection[str]) -> Any:
     """Return an object without attributes; raises ValueError if a dataclass has others than those named."""
-    if is_dataclass(kind) and _field_names(kind) != {*names}:
+    if is_dataclass(kind) and not _field_names(kind)[0] <= {*names} <= _field_names(kind)[1]:
         raise ValueError(f"{kind.__qualname__} has other attributes")
     return object.__new__(kind)
