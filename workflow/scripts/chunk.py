@@ -2,6 +2,8 @@
 
 from burridge_knopoff.job import Job
 
+if "snakemake" not in globals():
+    from by_hand import snakemake
 job = Job(snakemake)
 
 from burridge_knopoff.study.chunks import chunks
@@ -9,4 +11,4 @@ from burridge_knopoff.study.points import make_points
 from burridge_knopoff.study.study import Study
 
 study = Study.of_keys(job.config)
-make_points(study, chunks(study)[job.wildcards.chunk], job.results / "points")
+make_points(study, chunks(study)[job.wildcards.chunk], job.folder / "points")
