@@ -112,7 +112,7 @@ def extend(folder):
     for name in (".clang-format", "pyproject.toml", "setup.py", "Snakefile"):
         shutil.copy(REPOSITORY / name, folder)
     (folder / "profiles").symlink_to("workflow/profiles")
-    assert len(apply(PAGE, folder)) == 22
+    assert len(apply(PAGE, folder)) == 24
     run(folder, sys.executable, "setup.py", "--quiet", "build_ext", "--inplace")
 
 

@@ -1,14 +1,9 @@
-# The targets: what `snakemake points`, `summary`, `figures` and the others make. A rule that the study does not have stays, for
-# workflows that import it, but makes none of these files.
-# Longer chains are made in every run if the config has `chains.blocks`, otherwise for the target `chains`.
-CHAINS = "blocks" in STUDY.config["chains"]
-SUMMARIES = made(
-    *("runs", "mean_distance", "bifurcation_diagram", "lyapunov", "stick_slip", "agreement", "orbits", "equilibrium"),
-    *("attractors", "basins", "bifurcations", "edges", "phases"),
-    *("solvers", "proof", "two_blocks", "catalogue", "claims"),
-    *(["chains_summary"] if CHAINS else []),
-)
-FIGURES = made(*(f"figure_{figure.name}" for figure in figure_descriptions() if CHAINS or figure.inputs != ("chains",)))
+# The targets: the outputs of rules, of those that the study has. The other rules stay, for workflows that import them.
+# Longer chains are part of `all` if the config has `chains.blocks`; the target `chains` makes them in any case.
+WITHOUT = () if "blocks" in STUDY.config["chains"] else ("chains_summary", "figure_chains")
+IN_ALL = [rule for rule in outputs() if rule not in WITHOUT]
+SUMMARIES = made(*(rule for rule in IN_ALL if outputs()[rule].names.startswith("summary/")))
+FIGURES = made(*(rule for rule in IN_ALL if outputs()[rule].names.startswith("figures/")))
 CURVES = made(*(f"figure_{figure.name}" for figure in figure_descriptions() if figure.paper or STUDY.is_plane))
 
 
