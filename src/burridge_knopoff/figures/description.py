@@ -16,7 +16,7 @@ FILE : name of the picture, if it is not that of the module
 from __future__ import annotations
 
 import ast
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -63,11 +63,6 @@ def figure_descriptions() -> tuple[Description, ...]:
     descriptions = [_description(path) for path in Path(__file__).parent.glob("*.py")]
     figures = [description for description in descriptions if description is not None]
     return tuple(sorted(figures, key=lambda figure: (not figure.paper, figure.paper.lstrip("Figs. "), figure.name)))
-
-
-def picture_names(states: Collection[str]) -> set[str]:
-    """Return the names, without suffix, of all pictures of a study with the given initial states."""
-    return {_fill(figure.file, {"initial": state}) for figure in figure_descriptions() for state in states}
 
 
 def title_and_caption(file: str) -> tuple[str, str]:

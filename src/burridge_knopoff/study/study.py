@@ -103,13 +103,6 @@ class Study:
         """The law in the figures of single runs."""
         return self.config["figures"]["law"]
 
-    def shown_runs(self, wildcards: Mapping[str, str]) -> dict[str, Any]:
-        """Return `points` for the figures of single runs, with one initial state if a wildcard names it."""
-        points, law = self.points, self.shown_law
-        initial = {name: state for name, state in points["initial"].items() if wildcards.get("initial", name) == name}
-        only = {key: {law: points[key][law]} for key in ("laws", "settings")}
-        return {**points, **only, "initial": initial, "parameters": {"a": {self.shown_point: self.shown_a}}}
-
     @property
     def law_descriptions(self) -> dict[str, dict[str, Any]]:
         """The laws by name, as the config describes them."""
