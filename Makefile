@@ -176,16 +176,16 @@ mutants: .venv/kernel .venv/test .venv-mutants/ready  ## do the tests notice 300
 
 site: .venv/kernel .venv/site  ## build the documentation, with all docstrings: build/site/index.html, opens offline
 	$(BIN)/sphinx-build --fail-on-warning --fresh-env --quiet -c docs -d build/doctrees . build/site
+	$(BIN)/python docs/notebook.py build/site/docs/tutorial.ipynb
 	@echo build/site/index.html
 
-docs: .venv/kernel .venv/site  ## update all that the pages print from the default study, the keys and the notebook
+docs: .venv/kernel .venv/site  ## update all that the pages print from the default study, and the keys
 	$(BIN)/snakemake -c2 chains
 	$(BIN)/snakemake -c2
 	$(BIN)/python docs/refresh.py results/paper
 	$(BIN)/python docs/dictionary.py
 	$(BIN)/python docs/keys.py
 	$(BIN)/python docs/rules.py
-	$(BIN)/python docs/notebook.py
 
 # Needs uv. The lock files hold names, versions and hashes only.
 lock:  ## lock the versions of all requirements

@@ -1,8 +1,7 @@
 """Update the generated parts of the documentation from the study that `make` runs: `make docs`.
 
-Generated are the ledger of claims (docs/claims.json, its text in docs/claims.md, the numbers and the headline of the
-README), the branches of attractors (docs/branches.json, their table in docs/attractors.md), the table of costs in
-docs/performance.md, and the figures of docs/.
+Generated are the ledger of claims in docs/claims.md, the numbers and the headline of the README, the table of branches
+of attractors in docs/attractors.md, the table of costs in docs/performance.md, and the figures of docs/.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from PIL import Image
 
 from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.claims.comparison import compare
-from burridge_knopoff.claims.formats import as_json, as_markdown, count_sentence, dependent_sentence
+from burridge_knopoff.claims.formats import as_markdown, count_sentence, dependent_sentence
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.provenance.files import write_text
 from burridge_knopoff.report.numbers import with_powers_of_ten
@@ -31,7 +30,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 DOCS = Path(__file__).parent
-LEDGER, BRANCHES = DOCS / "claims.json", DOCS / "branches.json"
 BEGIN, END = "<!-- made by `make docs` -->", "<!-- end -->"
 
 # The table of branches lists those that exist at this many values of a under some law.
@@ -108,12 +106,18 @@ def branch_table(entries: Sequence[Mapping[str, Any]]) -> str:
     return "\n".join(rows) + f"\n\n{others} other branches exist at fewer than {LONG} values of a under each law.\n"
 
 
-def pages(ledger: Mapping[str, Any], entries: Sequence[Mapping[str, Any]]) -> dict[Path, str]:
-    """Return the generated block of each page of the documentation."""
+def pages(summary: Path) -> dict[Path, str]:
+    """Return the generated block of each page that shows what the summaries of a study say.
+
+    summary : folder of the summaries
+    """
+    ledger = json.loads((summary / "claims.json").read_text(encoding="utf-8"))
+    with xarray.open_dataset(summary / "attractors.nc") as attractors:
+        table = branch_table(branches(attractors))
     return {
         DOCS / "claims.md": as_markdown(ledger, "figures"),
         DOCS.parent / "README.md": headline(ledger),
-        DOCS / "attractors.md": branch_table(entries),
+        DOCS / "attractors.md": table,
     }
 
 
@@ -146,21 +150,9 @@ def copy_figure(source: Path) -> None:
     few.save(DOCS / "figures" / source.name, optimize=True)
 
 
-def published_ledger(results: Path) -> dict[str, Any]:
-    """Return the ledger of a study without the fingerprint of the sources, which change more often than verdicts do."""
-    ledger: dict[str, Any] = json.loads((results / "summary/claims.json").read_text(encoding="utf-8"))
-    del ledger["source_fingerprint"], ledger["origin"]
-    return ledger
-
-
 def main(results: Path) -> None:
-    """Update the pages, the JSON files and the figures from the results of a study."""
-    ledger = published_ledger(results)
-    with xarray.open_dataset(results / "summary/attractors.nc") as attractors:
-        entries = branches(attractors)
-    write_text(LEDGER, as_json(ledger))
-    write_text(BRANCHES, json.dumps(entries, ensure_ascii=False, indent=1) + "\n")
-    for path, block in pages(ledger, entries).items():
+    """Update the pages and the figures from the results of a study."""
+    for path, block in pages(results / "summary").items():
         write_text(path, replace_block(path.read_text(encoding="utf-8"), block))
     performance = DOCS / "performance.md"
     write_text(performance, replace_block(performance.read_text(encoding="utf-8"), stage_table(results)))
