@@ -15,7 +15,7 @@ $(PIP) install --no-build-isolation --no-deps --editable .
 endef
 COMPILE := $(BIN)/python -m compileall -qq -j 0 -x /tests/ .venv/lib src
 
-.PHONY: study help announce setup kernel test test-all types style test-oldest durations benchmark faults fuzz sanitize mutants size docs site lock clean
+.PHONY: study help announce setup kernel test test-all types style test-oldest durations benchmark fuzz sanitize mutants size docs site lock clean
 
 study: announce .venv/kernel  ## set up and run the default study (the target of a plain `make`)
 	$(BIN)/snakemake -c2
@@ -124,17 +124,10 @@ benchmark: .venv/kernel .venv-benchmark/ready  ## print most tables of docs/perf
 	.venv-benchmark/bin/python benchmarks/chains.py
 	.venv-benchmark/bin/python benchmarks/lyapunov.py
 	.venv-benchmark/bin/python benchmarks/maps.py
-	.venv-benchmark/bin/python benchmarks/point_job.py
-	.venv-benchmark/bin/python benchmarks/study.py
-	rm -rf .snakemake/kept/paper
-	$(BIN)/snakemake -c2 --forceall
-	$(BIN)/python benchmarks/stages.py results/paper
+	$(BIN)/snakemake -c2
 	$(BIN)/python benchmarks/tori.py results/paper
 	$(BIN)/python benchmarks/lifetimes.py results/paper
 	$(BIN)/python benchmarks/other_settings.py results/paper
-
-faults: .venv/kernel .venv/test  ## kill a study 20 times, and more
-	$(BIN)/python benchmarks/faults.py
 
 size: .venv/kernel  ## run a study of 10,000 points
 	$(BIN)/python benchmarks/size.py
