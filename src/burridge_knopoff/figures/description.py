@@ -1,8 +1,6 @@
 """Descriptions of the figures, which rules, `snakemake --report` and the report of a study read without drawing.
 
-A module of this folder that assigns CAPTION is a figure. The first line of its docstring says what it shows and starts
-with an article rather than a proper name, so that it can follow "Draw". The module has a function `draw` and these
-plain constants:
+A module of this folder that assigns CAPTION is a figure. It has a function `draw` and these plain constants:
 
 TITLE, CATEGORY : for a reader; PAPER : figures of the paper that it reproduces, as "Fig. 2"
 CAPTION : what is seen; {initial} stands for an initial state
@@ -27,7 +25,6 @@ class Description:
     """The description of a figure, from its module."""
 
     name: str
-    subject: str
     title: str
     category: str
     caption: str
@@ -87,5 +84,4 @@ def _description(path: Path) -> Description | None:
         return None
     names = ("TITLE", "CATEGORY", "CAPTION", "INPUTS", "FROM_STUDY", "OVER", "CONDITION", "PAPER", "FILE")
     fields = {name.lower(): ast.literal_eval(constants[name]) for name in names if name in constants}
-    headline = (ast.get_docstring(module) or "").partition("\n")[0]
-    return Description(path.stem, headline[:1].lower() + headline[1:], **{"file": path.stem, **fields})
+    return Description(path.stem, **{"file": path.stem, **fields})
