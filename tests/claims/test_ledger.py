@@ -31,7 +31,8 @@ from burridge_knopoff.claims.verdict import (
 )
 from burridge_knopoff.figures.description import title_and_caption
 from burridge_knopoff.study.formatting import format_values
-from tests.claims.alterations import CASES, judge_claim
+from tests.claims.alterations import judge_claim
+from tests.claims.cases import CASES
 from tests.claims.worlds import CONFIG, A, evidence, paper_world
 from tests.conftest import quick_first
 from tests.refused import refused
