@@ -18,7 +18,7 @@ from burridge_knopoff.proof.scope import LARGEST_V, NONLINEAR_V
 from burridge_knopoff.study.chunks import chunks
 from burridge_knopoff.study.keys import condition_refusal, length_refusal
 from burridge_knopoff.study.paths import CHUNK, VALUE
-from burridge_knopoff.study.stages import STAGES
+from burridge_knopoff.study.stages import STAGES, missing_library
 from burridge_knopoff.study.study import Study, all_points, solver_points
 
 #: The wildcards of jobs.
@@ -179,11 +179,16 @@ def outputs() -> dict[str, Outputs]:
     return rules
 
 
-def refusal(study: Study, rule: str) -> str:
+def omission(study: Study, rule: str) -> str:
     """Return why a study does not have the files of a rule, in a line; empty if it has."""
     item = outputs()[rule]
-    reasons = (study.omission(item.stage, item.over), item.lack(study), *(refusal(study, need) for need in item.needs))
+    reasons = (study.omission(item.stage, item.over), item.lack(study), *(omission(study, need) for need in item.needs))
     return next(filter(None, reasons), "")
+
+
+def refusal(study: Study, rule: str) -> str:
+    """Return why the files of a rule are not made: the study does not have them, or a library is missing here."""
+    return omission(study, rule) or missing_library(outputs()[rule].stage)
 
 
 class File(NamedTuple):
@@ -198,7 +203,7 @@ def study_files(study: Study) -> dict[str, File]:
     return {
         name.format(**job): File(rule, log_of(item.names.split()[0].format(**job)))
         for rule, item in outputs().items()
-        if "{run}" not in item.names and not refusal(study, rule)
+        if "{run}" not in item.names and not omission(study, rule)
         for job in item.jobs(study)
         for name in item.names.split()
     }

@@ -74,24 +74,12 @@ def planned(config: Mapping[str, Any], *targets: str) -> PlannedStudy:
 
 
 def _plan(results: str, targets: tuple[str, ...]) -> PlannedStudy:
-    from snakemake.cli import main
-
     from burridge_knopoff.outputs import outputs, refusal, study_files
-    from snakemake_logger_plugin_study import LogHandler, Plan
+    from snakemake_logger_plugin_study.dry_run import dry_run
 
-    plans: list[Plan] = []
-    LogHandler.set_plan, set_plan = lambda self, plan: (plans.append(plan), set_plan(self, plan)), LogHandler.set_plan
-
-    written = os.open("output", os.O_CREAT | os.O_RDWR)
-    os.dup2(written, 1)
-    os.dup2(written, 2)
-    arguments = ["-n", "-c2", "-s", str(ROOT / "Snakefile"), "--configfile", "study.yaml", "--nocolor"]
-    with contextlib.suppress(SystemExit):
-        main([*targets, *arguments])
-    output = Path("output").read_text()
-    if not plans:
+    plan, output = dry_run([*targets, "-s", str(ROOT / "Snakefile"), "--configfile", "study.yaml"])
+    if plan is None:
         return PlannedStudy(output=output)
-    (plan,) = plans
     Path(results).mkdir(parents=True)
     plan.record()
     dag = plan.workflow.dag

@@ -59,6 +59,8 @@ def test_without_python_flint_a_study_leaves_the_proof_out(monkeypatch):
     assert not [name for name in claims.inputs["summaries"] if "proof" in name]
     reason = "python-flint is not installed: `pip install python-flint`"
     assert study.refusals["proof"] == reason
+    # What was made with it is not left over.
+    assert study.files["summary/proof.nc"].rule == "proof"
     assert remarks(load_study(CONFIG, "some.yaml"), CONFIG) == [f"proof: none, since {reason}"]
     # Nor is anything said if the proof is not asked for, or does not apply.
     for other in ({"without": ["proof"]}, {"laws": {"stribeck": {}}}):

@@ -136,7 +136,8 @@ def catalogue_keys(wildcards):
 
 def read_by_judges(wildcards):
     """Return the summaries of the study that judges read."""
-    return [f"{RESULTS}/summary/{name}.nc" for name in READS if f"summary/{name}.nc" in FILES]
+    names = [f"summary/{name}.nc" for name in READS]
+    return [f"{RESULTS}/{name}" for name in names if name in FILES and not refusal(STUDY, FILES[name].rule)]
 
 
 def figures_of_claims(wildcards):

@@ -8,20 +8,16 @@ depends on it out of date. Messages and errors are printed. It runs in a debugge
 """
 
 import argparse
-import contextlib
-import io
 import os
 import sys
 import tempfile
 from pathlib import Path
 from types import SimpleNamespace
 
-from snakemake.cli import main
-
 from burridge_knopoff.outputs import refusal, rule_of, study_files
 from burridge_knopoff.provenance.record import NAME, study_folder
 from burridge_knopoff.study.recorded import recorded_study
-from snakemake_logger_plugin_study import LogHandler
+from snakemake_logger_plugin_study.dry_run import dry_run
 from snakemake_logger_plugin_study.internals import requested_jobs
 
 SCRIPT = Path(sys.modules["__main__"].__file__).resolve()
@@ -69,18 +65,11 @@ def last_study():
 
 def planned_job(file, arguments):
     """Return the job that makes a file, by Snakemake's own plan."""
-    plans, set_plan, words = [], LogHandler.set_plan, io.StringIO()
-    LogHandler.set_plan = lambda handler, plan: plans.append(plan)
     where = [] if "-s" in arguments else ["-s", f"{SNAKEFILE}"]
-    try:
-        with contextlib.redirect_stderr(words), contextlib.redirect_stdout(words), contextlib.suppress(SystemExit):
-            main([file, "-n", "-c2", "--logger", "study", "--nolock", *where, *arguments])
-    finally:
-        LogHandler.set_plan = set_plan
-    jobs = [job for plan in plans if plan.workflow.dag for job in requested_jobs(plan.workflow) if file in job.output]
-    if not jobs:
-        raise ValueError(words.getvalue().strip() or f"{file}: Snakemake has no job for it")
-    return jobs[0]
+    plan, written = dry_run([file, *where, *arguments])
+    if not (plan and plan.workflow.dag):
+        raise ValueError(written.strip())
+    return next(job for job in requested_jobs(plan.workflow) if file in job.output)
 
 
 try:
