@@ -17,7 +17,7 @@ from burridge_knopoff.running.status import STATUS_WORDS, Status
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.study import Study, all_points
 from burridge_knopoff.summaries.event_order import common_order
-from burridge_knopoff.summaries.points import EVENTS, all_events, read_point
+from burridge_knopoff.summaries.points import EVENTS, all_events, point_axes, read_point
 from burridge_knopoff.summaries.sentences import incomplete
 
 NO_RUN = -1
@@ -65,8 +65,7 @@ def compare_solvers(config: Mapping[str, Any], results: Path) -> xarray.Dataset:
     """
     study = Study.of_keys({**config, "a": config["solvers"]["a"]})
     solvers = config["solver"]
-    a = list(study.grid.values())
-    coordinates = axes({"solver": SOLVER}, law=study.laws, solver=SOLVERS, initial=study.initial, a=a)
+    coordinates = {**axes({"solver": SOLVER}, solver=SOLVERS), **point_axes(study)}
     values = empty_columns(VARIABLES, {name: len(coordinates[name][1]) for name in _AXES})
     indices = np.ndindex(len(study.laws), len(study.initial), len(study.grid))
     for (i, *place), point in zip(indices, all_points(study), strict=True):
