@@ -70,7 +70,7 @@ def capture(monkeypatch):
         monkeypatch.setattr(radius, "label", label)
         monkeypatch.setattr(radius, "perturb", lambda start, size, generator: (start, size))
         monkeypatch.setattr(radius, "advance", lambda model, starts, time: [*starts, time])
-        size = Capture().radius(MODEL, listed, index, least, 1e-6, SETTINGS)
+        size = Capture().find_radius(MODEL, listed, index, least, 1e-6, SETTINGS)
         assert len(calls) == len(reached)
         return size, calls
 

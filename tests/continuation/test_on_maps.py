@@ -1,10 +1,13 @@
 """Continuation and matching on maps whose bifurcations are known in closed form."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
 from burridge_knopoff import MotionKind, SearchSettings
 from burridge_knopoff.continuation.attractor_continuation import continue_attractors
+from burridge_knopoff.continuation.matching import Matcher
 from burridge_knopoff.continuation.settings import RefinementSettings
 from tests.maps import LOGISTIC, TWO_WELLS
 
@@ -103,3 +106,38 @@ def test_results_do_not_depend_on_other_values(maps):
     both = alone.attractors[0], several.attractors[1]
     states = [sorted(item.motion.state().position[0] for item in attractors) for attractors in both]
     assert states[0] == pytest.approx(states[1], abs=1e-9)
+
+
+@dataclass(frozen=True)
+class OrderMatcher(Matcher):
+    """Matches attractors in the order of their positions, whatever their kinds and periods."""
+
+    def match(self, before, after):
+        def ordered(sets):
+            return sorted(sets, key=lambda k: sets[k].attractor.motion.mean_distance)
+
+        return dict(zip(ordered(after), ordered(before), strict=False))
+
+    def is_unchanged(self, before, after):
+        return True
+
+
+def test_another_matcher_decides_what_is_the_same(maps):
+    """By order, the only well beyond a fold continues the lowest branch; a doubled period is no change to locate.
+
+    By distance, the well has moved too far in a step, and is another branch.
+    """
+    models, refine = [TWO_WELLS.at(1.0 + mu) for mu in (0.3, 0.45)], RefinementSettings(1.0)
+    by_distance, by_order = (
+        continue_attractors(models, WELLS, refine=refine, **share) for share in ({}, {"matcher": OrderMatcher()})
+    )
+    for continuation, beyond in ((by_distance, 3), (by_order, 1)):
+        lower, upper = np.argsort([item.motion.mean_distance for item in continuation.attractors[0]])
+        assert continuation.branch[0][[lower, upper]].tolist() == [1, 2]
+        assert continuation.branch[1].tolist() == [beyond]
+    grid, refine = (2.9, 3.1), RefinementSettings(0.05)
+    counts = [
+        len(continue_attractors([LOGISTIC.at(r) for r in grid], LINE, refine=refine, **share).models)
+        for share in ({}, {"matcher": OrderMatcher()})
+    ]
+    assert counts[0] > counts[1] == len(grid)
