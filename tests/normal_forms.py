@@ -22,7 +22,7 @@ from burridge_knopoff import (
     locate_bifurcations,
 )
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation
-from burridge_knopoff.periodic_orbits.flow import new_runner, rate
+from burridge_knopoff.periodic_orbits.flow import mean_distance, new_runner, rate
 from burridge_knopoff.periodic_orbits.grazing_distances import GrazingDistances, distances_of
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 
@@ -124,6 +124,7 @@ def distances(model, orbit):
 
 
 new_runner.register(MapModel, MapRunner)
+mean_distance.register(MapModel, lambda model, start, period: np.ptp(start.position))
 rate.register(MapModel, lambda model, at: np.repeat([0.0, 1.0], model.blocks))
 distances_of.register(MapModel, distances)
 
