@@ -15,7 +15,7 @@ $(PIP) install --no-build-isolation --no-deps --editable .
 endef
 COMPILE := $(BIN)/python -m compileall -qq -j 0 -x /tests/ .venv/lib src
 
-.PHONY: study help announce setup kernel test test-all types style test-oldest durations benchmark faults fuzz sanitize mutants size docs site lock clean
+.PHONY: study help announce setup kernel test test-all types style test-oldest durations benchmark fuzz sanitize mutants size docs site lock clean
 
 study: announce .venv/kernel  ## set up and run the default study (the target of a plain `make`)
 	$(BIN)/snakemake -c2
@@ -124,17 +124,10 @@ benchmark: .venv/kernel .venv-benchmark/ready  ## print most tables of docs/perf
 	.venv-benchmark/bin/python benchmarks/chains.py
 	.venv-benchmark/bin/python benchmarks/lyapunov.py
 	.venv-benchmark/bin/python benchmarks/maps.py
-	.venv-benchmark/bin/python benchmarks/point_job.py
-	.venv-benchmark/bin/python benchmarks/study.py
-	rm -rf .snakemake/kept/paper
-	$(BIN)/snakemake -c2 --forceall
-	$(BIN)/python benchmarks/stages.py results/paper
+	$(BIN)/snakemake -c2
 	$(BIN)/python benchmarks/tori.py results/paper
 	$(BIN)/python benchmarks/lifetimes.py results/paper
 	$(BIN)/python benchmarks/other_settings.py results/paper
-
-faults: .venv/kernel .venv/test  ## kill a study 20 times, and more
-	$(BIN)/python benchmarks/faults.py
 
 size: .venv/kernel  ## run a study of 10,000 points
 	$(BIN)/python benchmarks/size.py
@@ -176,16 +169,16 @@ mutants: .venv/kernel .venv/test .venv-mutants/ready  ## do the tests notice 300
 
 site: .venv/kernel .venv/site  ## build the documentation, with all docstrings: build/site/index.html, opens offline
 	$(BIN)/sphinx-build --fail-on-warning --fresh-env --quiet -c docs -d build/doctrees . build/site
+	$(BIN)/python docs/notebook.py build/site/docs/tutorial.ipynb
 	@echo build/site/index.html
 
-docs: .venv/kernel .venv/site  ## update all that the pages print from the default study, the keys and the notebook
+docs: .venv/kernel .venv/site  ## update all that the pages print from the default study, and the keys
 	$(BIN)/snakemake -c2 chains
 	$(BIN)/snakemake -c2
 	$(BIN)/python docs/refresh.py results/paper
 	$(BIN)/python docs/dictionary.py
 	$(BIN)/python docs/keys.py
 	$(BIN)/python docs/rules.py
-	$(BIN)/python docs/notebook.py
 
 # Needs uv. The lock files hold names, versions and hashes only.
 lock:  ## lock the versions of all requirements

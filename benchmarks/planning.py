@@ -17,8 +17,7 @@ from itertools import chain
 from pathlib import Path
 
 import yaml
-from measure import print_table
-from process import BIN, REPOSITORY, SNAKEMAKE, run
+from measure import BIN, REPOSITORY, SNAKEMAKE, print_table, run
 
 PROFILE = REPOSITORY / "workflow" / "profiles" / "slurm"
 #: Profiles with which studies are planned, by the names of their columns.
@@ -40,9 +39,7 @@ FILES_OF_A_POINT = 4
 def planned(folder: Path, target: str, profile: Path) -> tuple[float, float]:
     """Return CPU time in seconds and peak memory in MB of a dry run."""
     command = [*SNAKEMAKE, "-n", "-d", str(folder), "--workflow-profile", str(profile), target]
-    # The plan of many jobs is a long text.
-    silent = ["sh", "-c", 'exec "$@" >/dev/null 2>&1', "sh"]
-    used = run([*silent, *command, "--configfile", str(folder / "study.yaml")])
+    used = run([*command, "--configfile", str(folder / "study.yaml")], folder)
     return used.cpu, used.memory
 
 

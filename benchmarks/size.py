@@ -8,17 +8,14 @@ the wall time would depend on other programs. A second run has nothing to do; `b
 from __future__ import annotations
 
 import argparse
-import subprocess
 import sys
 import tempfile
-import time
 from collections import defaultdict
-from dataclasses import dataclass
 from pathlib import Path
 
-from measure import print_table
-from process import BIN, ONE_THREAD, SNAKEMAKE, children_cpu
-from stages import rules_of
+from measure import BIN, SNAKEMAKE, print_table, run
+
+from burridge_knopoff.report.stages import read_stages
 
 LAWS, STATES = 2, 5
 #: Of the whole range of a, so that small and large studies have the same kinds of motion.
@@ -40,40 +37,12 @@ chains: {{two_blocks: {{a: [0.02, 0.15], samples: 2}}}}
 STATE = "  {name}: {{position: [{first}, -0.993, -0.991], velocity: [0.099, 0.1012, 0.1023]}}"
 
 
-@dataclass
-class Run:
-    """Wall and CPU time in seconds of a command, and the peak memory in MB of its own process."""
-
-    wall: float
-    cpu: float
-    memory: float
-
-
 def config_of(points: int) -> str:
     """Return the config of a study of that many points."""
     count = points // (LAWS * STATES)
     values = ", ".join(f"{A_RANGE * (k + 1) / count:.7f}" for k in range(count))
     states = "\n".join(STATE.format(name=f"state{n}", first=-0.989 + 0.4 * n) for n in range(STATES))
     return CONFIG.format(values=values, states=states)
-
-
-def run(command: list[str], folder: Path) -> Run:
-    """Run a command to its end, sampling the memory of its process."""
-    cpu, begin, peak = -children_cpu(), time.perf_counter(), 0.0
-    with tempfile.TemporaryFile() as output:
-        process = subprocess.Popen(command, cwd=folder, env=ONE_THREAD, stdout=output, stderr=output)
-        while process.poll() is None:
-            try:
-                status = Path(f"/proc/{process.pid}/status").read_text()
-                peak = max(peak, *(float(line.split()[1]) for line in status.splitlines() if line.startswith("VmHWM")))
-            except (OSError, TypeError):
-                pass
-            time.sleep(0.05)
-        wall = time.perf_counter() - begin
-        if process.returncode:
-            output.seek(0)
-            sys.exit(f"{' '.join(command)} failed:\n{output.read().decode()[-4000:]}")
-    return Run(wall, cpu + children_cpu(), peak * 1024 / 1e6)
 
 
 def measure(points: int, folder: Path, cores: int) -> tuple[list[object], dict[str, tuple[float, float]]]:
@@ -86,7 +55,8 @@ def measure(points: int, folder: Path, cores: int) -> tuple[list[object], dict[s
     check = run([str(BIN / "bk"), "check", "results/size"], folder)
     size = sum(path.stat().st_size for path in folder.joinpath("results/size/points").rglob("*.nc")) / 1e6
     rules: dict[str, tuple[float, float]] = defaultdict(lambda: (0.0, 0.0))
-    rules.update((rule.name, (rule.cpu, rule.memory)) for rule in rules_of(folder / "results/size"))
+    stages = read_stages(folder / "results/size/benchmarks")
+    rules.update((stage.name, (stage.cpu, stage.memory)) for stage in stages)
     row = [points, f"{plan.wall:.1f}", f"{whole.wall / 60:.1f}", f"{whole.cpu / points:.3f}", f"{whole.memory:.0f}"]
     row += [f"{again.wall:.1f}", f"{check.wall:.1f}", f"{size:.0f}"]
     print(f"{points} points: {whole.wall:.0f} s", file=sys.stderr)

@@ -1,4 +1,4 @@
-"""Make docs/tutorial.ipynb from docs/tutorial.md: python docs/notebook.py.
+"""Write docs/tutorial.md as a notebook: python docs/notebook.py FILE.
 
 Nothing is run: each cell gets the output and the picture from the page, where tests check them.
 """
@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import base64
 import re
+import sys
 from pathlib import Path
 
 import nbformat
 from nbformat import v4
 
 PAGE = Path(__file__).parent / "tutorial.md"
-NOTEBOOK = PAGE.with_suffix(".ipynb")
 
 # A block of code with what it prints, or a picture.
 CELL = re.compile(
@@ -67,4 +67,4 @@ def picture(match: re.Match[str]) -> nbformat.NotebookNode:
 
 
 if __name__ == "__main__":
-    NOTEBOOK.write_text(notebook(), encoding="utf-8")
+    Path(sys.argv[1]).write_text(notebook(), encoding="utf-8")

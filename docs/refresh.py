@@ -1,8 +1,7 @@
 """Update the generated parts of the documentation from the study that `make` runs: `make docs`.
 
-Generated are the ledger of claims (docs/claims.json, its text in docs/claims.md, the numbers and the headline of the
-README), the branches of attractors (docs/branches.json, their table in docs/attractors.md), the table of costs in
-docs/performance.md, and the figures of docs/.
+Generated are the ledger of claims in docs/claims.md, the numbers and the headline of the README, the table of branches
+of attractors in docs/attractors.md, the table of costs in docs/performance.md, and the figures of docs/.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from PIL import Image
 
 from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.claims.comparison import compare
-from burridge_knopoff.claims.formats import as_json, as_markdown, count_sentence, dependent_sentence
+from burridge_knopoff.claims.formats import as_markdown, count_sentence, dependent_sentence
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.provenance.files import write_text
 from burridge_knopoff.report.numbers import with_powers_of_ten
@@ -28,14 +27,16 @@ from burridge_knopoff.report.stages import read_stages
 from burridge_knopoff.study.formatting import span
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
 DOCS = Path(__file__).parent
-LEDGER, BRANCHES = DOCS / "claims.json", DOCS / "branches.json"
 BEGIN, END = "<!-- made by `make docs` -->", "<!-- end -->"
 
 # The table of branches lists those that exist at this many values of a under some law.
 LONG = 5
+
+# Decimals of ⟨J⟩ in this table: less is 0.
+MEAN_DIGITS = 5
 
 # The table of costs lists rules that take at least this time, in seconds.
 LISTED = 10.0
@@ -64,56 +65,43 @@ def headline(ledger: Mapping[str, Any]) -> str:
     return f"{textwrap.fill(sentence, 120, break_on_hyphens=False)}\n\n{table}\n"
 
 
-def branches(attractors: xarray.Dataset) -> list[dict[str, Any]]:
-    """Return each branch of attractors under each law: where it exists along a, its ⟨J⟩ and its kinds of motion.
+def branch_table(attractors: xarray.Dataset) -> str:
+    """Return the branches that exist at LONG or more values of a under some law as a table, a row for each law.
 
     attractors : attractors.nc
     """
-    entries = []
-    for number, name in sorted(branch_names(attractors).items()):
-        for law in attractors["law"].values.tolist():
-            part = attractors.sel(law=law)
-            there = part["branch"].values == number
-            a = part["a"].values[there.any(axis=1)]
-            if not len(a):
-                continue
-            mean, kinds = part["mean_distance"].values[there], np.unique(part["kind"].values[there])
-            entries.append(
-                {
-                    "number": number,
-                    "name": name,
-                    "law": law,
-                    "first_a": float(a[0]),
-                    "last_a": float(a[-1]),
-                    "values_of_a": len(a),
-                    "mean_distance": [round(float(end(mean)), 5) for end in (np.nanmin, np.nanmax)],
-                    "kinds": [MotionKind(kind).words for kind in kinds.tolist()],
-                }
-            )
-    return entries
-
-
-def branch_table(entries: Sequence[Mapping[str, Any]]) -> str:
-    """Return the branches that exist at LONG or more values of a as a table, a row for each law."""
-    long = {branch["number"] for branch in entries if branch["values_of_a"] >= LONG}
     rows = ["| branch | law | a | values of a | ⟨J⟩ | kinds of motion |", "| --- | --- | --- | ---: | --- | --- |"]
-    for branch in entries:
-        if branch["number"] in long:
-            name = branch["name"] if branch["name"].endswith(")") else f"{branch['name']} ({branch['number']})"
-            a = span(f"{branch['first_a']:g}", f"{branch['last_a']:g}")
-            mean = span(*(f"{end:.2g}" for end in branch["mean_distance"]))
-            cells = [name, branch["law"], a, str(branch["values_of_a"]), mean, ", ".join(branch["kinds"])]
-            rows.append(f"| {' | '.join(cells)} |")
-    others = len({branch["number"] for branch in entries} - long)
-    return "\n".join(rows) + f"\n\n{others} other branches exist at fewer than {LONG} values of a under each law.\n"
+    names = branch_names(attractors)
+    short = 0
+    for number, name in sorted(names.items()):
+        exists = attractors["branch"] == number
+        counts = exists.any("attractor").sum("a")
+        if not (counts >= LONG).any():
+            short += 1
+            continue
+        title = name if name.endswith(")") else f"{name} ({number})"
+        for law in counts["law"].values[counts.values > 0].tolist():
+            part, there = attractors.sel(law=law), exists.sel(law=law).values
+            a, mean = part["a"].values[there.any(axis=1)], part["mean_distance"].values[there]
+            ends = [round(float(end(mean)), MEAN_DIGITS) for end in (np.nanmin, np.nanmax)]
+            kinds = [MotionKind(kind).words for kind in np.unique(part["kind"].values[there]).tolist()]
+            cells = [title, law, span(f"{a[0]:g}", f"{a[-1]:g}"), str(len(a)), span(*(f"{end:.2g}" for end in ends))]
+            rows.append(f"| {' | '.join([*cells, ', '.join(kinds)])} |")
+    return "\n".join(rows) + f"\n\n{short} other branches exist at fewer than {LONG} values of a under each law.\n"
 
 
-def pages(ledger: Mapping[str, Any], entries: Sequence[Mapping[str, Any]]) -> dict[Path, str]:
-    """Return the generated block of each page of the documentation."""
+def pages(summary: Path) -> dict[Path, str]:
+    """Return the generated block of each page that shows what the summaries of a study say.
+
+    summary : folder of the summaries
+    """
+    ledger = json.loads((summary / "claims.json").read_text(encoding="utf-8"))
+    with xarray.open_dataset(summary / "attractors.nc") as attractors:
+        table = branch_table(attractors)
     return {
         DOCS / "claims.md": as_markdown(ledger, "figures"),
         DOCS.parent / "README.md": headline(ledger),
-        DOCS / "attractors.md": branch_table(entries),
+        DOCS / "attractors.md": table,
     }
 
 
@@ -146,21 +134,9 @@ def copy_figure(source: Path) -> None:
     few.save(DOCS / "figures" / source.name, optimize=True)
 
 
-def published_ledger(results: Path) -> dict[str, Any]:
-    """Return the ledger of a study without the fingerprint of the sources, which change more often than verdicts do."""
-    ledger: dict[str, Any] = json.loads((results / "summary/claims.json").read_text(encoding="utf-8"))
-    del ledger["source_fingerprint"], ledger["origin"]
-    return ledger
-
-
 def main(results: Path) -> None:
-    """Update the pages, the JSON files and the figures from the results of a study."""
-    ledger = published_ledger(results)
-    with xarray.open_dataset(results / "summary/attractors.nc") as attractors:
-        entries = branches(attractors)
-    write_text(LEDGER, as_json(ledger))
-    write_text(BRANCHES, json.dumps(entries, ensure_ascii=False, indent=1) + "\n")
-    for path, block in pages(ledger, entries).items():
+    """Update the pages and the figures from the results of a study."""
+    for path, block in pages(results / "summary").items():
         write_text(path, replace_block(path.read_text(encoding="utf-8"), block))
     performance = DOCS / "performance.md"
     write_text(performance, replace_block(performance.read_text(encoding="utf-8"), stage_table(results)))

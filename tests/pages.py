@@ -1,4 +1,4 @@
-"""Runs the Python blocks of documentation pages and compares the output that follows each block.
+"""Reads documentation pages, runs their Python blocks and compares the output that follows each block.
 
 `python -m tests.pages docs/tutorial.md`, in the root of the checkout, runs a page and updates the output and pictures
 of its blocks; --skip leaves out the blocks below a heading, --only runs only those.
@@ -35,6 +35,13 @@ def blocks(page: str) -> list[Block]:
         headings = re.findall(r"^#+ (.*)$", before, re.MULTILINE)
         code_blocks.append(Block(match["info"], match["text"], headings[-1] if headings else "", match.span("text")))
     return code_blocks
+
+
+def claim_sections(root: Path) -> dict[str, str]:
+    """Return {name of a claim: its section of docs/claims.md, as one line}."""
+    parts = re.split(r"^#{3,} (.*)$", (root / "docs/claims.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
+    sections = dict(zip(parts[1::2], parts[2::2], strict=True))
+    return {name: " ".join(text.split()) for name, text in sections.items() if re.fullmatch("[a-z0-9_]+", name)}
 
 
 def apply(page: str, root: Path) -> list[str]:

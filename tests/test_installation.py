@@ -15,7 +15,7 @@ from tests.pages import blocks
 
 pytestmark = pytest.mark.slow
 
-# Subpackages for studies only, which `snakemake` uses from a checkout: the extra `study`.
+# Subpackages for studies only, which `snakemake` uses from a checkout: the extras `study` and `proof`.
 OF_STUDY = ("proof", "report", "summaries.proof")
 
 MODULES = """

@@ -16,7 +16,8 @@ from burridge_knopoff.claims.verdict import HOLDS, NOT_TESTABLE, NotTestableErro
 from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.paper import PAPER_PHASES
 from burridge_knopoff.study.yaml_file import read_config
-from tests.claims.alterations import THEORY, judge_claim
+from tests.claims.alterations import judge_claim
+from tests.claims.cases import THEORY
 from tests.claims.worlds import Summaries, evidence, paper_world
 
 GRID = np.arange(121) * 0.0025

@@ -25,17 +25,16 @@ from burridge_knopoff.claims.verdict import (
 )
 from burridge_knopoff.model.sampling import fraction_interval
 from tests.claims.alterations import (
-    ONE_ATTRACTOR,
     Alteration,
     alter,
     both,
-    count_sections,
     everywhere,
     judge_altered,
     lost_at,
     reached,
 )
-from tests.claims.worlds import Summaries, evidence, paper_world
+from tests.claims.cases import ONE_ATTRACTOR
+from tests.claims.worlds import Summaries, count_sections, evidence, paper_world
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])

@@ -32,11 +32,11 @@ KINDS = {
 }
 
 
-def changes(judge, evidence, parameters, verdict, others=(), reads=()):
+def changes(judge, evidence, parameters, verdict, reads=()):
     """Return the choices that would change the verdict of a claim with these parameters."""
     choices = {name: KINDS[name].__metadata__[0] for name in parameters if name in KINDS}
     claim = Claim("name", "topic", "statement", "place", "figure", reads, judge, parameters, choices)
-    return changing_choices(claim, judge, evidence, verdict, others)
+    return changing_choices(claim, judge, evidence, verdict)
 
 
 def judge_with_change(name, place, below, above):
@@ -261,18 +261,6 @@ def test_window_and_whole_run_are_tried():
     assert changes(judge, NOTHING, {"part": "run"}, Verdict(FAILS, "")) == [
         "holds if the window were used instead of the whole run"
     ]
-
-
-def test_other_evidence_is_tried():
-    other = Evidence({}, {"motion": {}})
-
-    def judge(evidence, _parameters):
-        return Verdict(FAILS if evidence is other else HOLDS, "")
-
-    found = changes(
-        judge, NOTHING, {}, Verdict(HOLDS, ""), [("zero is 2 (here 1)", other), ("zero is 0.5 (here 1)", NOTHING)]
-    )
-    assert found == ["fails if zero is 2 (here 1)"]
 
 
 def test_nothing_changes_a_claim_that_cannot_be_tested():

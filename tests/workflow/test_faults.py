@@ -1,7 +1,4 @@
-"""After a kill, a crash, a full or a read-only disk the next run ends with the bytes of an undisturbed one.
-
-benchmarks/faults.py is the longer version.
-"""
+"""After a kill, a crash, a full or a read-only disk the next run ends with the bytes of an undisturbed one."""
 
 import os
 import random

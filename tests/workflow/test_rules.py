@@ -1,8 +1,11 @@
 """The rules of studies: which rules a study has, which files it makes, and on which keys these depend."""
 
+import sys
+
 import pytest
 
 from burridge_knopoff.study.load import load_study
+from burridge_knopoff.study.remarks import remarks
 from burridge_knopoff.study.stages import STAGES
 from tests.conftest import quick_first
 from tests.workflow.planned import planned
@@ -44,6 +47,21 @@ def test_the_stages_of_a_study(config, missing):
     assert {name for name in STAGES if name not in study.rules} == missing
     # A request of one says why the study does not have it.
     assert missing <= {*study.refusals}
+
+
+def test_without_python_flint_a_study_leaves_the_proof_out(monkeypatch):
+    """The claims are judged without it, and one line says what to install."""
+    monkeypatch.setitem(sys.modules, "flint", None)
+    study = planned(CONFIG)
+    assert {name for name in STAGES if name not in study.rules} == {"proof", "catalogue", "edges"}
+    (claims,) = study.of("claims")
+    assert not [name for name in claims.inputs["summaries"] if "proof" in name]
+    reason = "python-flint is not installed: `pip install python-flint`"
+    assert study.refusals["proof"] == reason
+    assert remarks(load_study(CONFIG, "some.yaml"), CONFIG) == [f"proof: none, since {reason}"]
+    # Nor is anything said if the proof is not asked for, or does not apply.
+    for other in ({"without": ["proof"]}, {"laws": {"stribeck": {}}}):
+        assert remarks(load_study({**CONFIG, **other}, "some.yaml"), CONFIG) == []
 
 
 def test_stages_that_are_left_out_have_no_values_of_a():

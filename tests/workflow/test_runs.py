@@ -27,7 +27,7 @@ def test_nothing_to_do_with_the_snakefile_by_another_path(finished, other):
 
 
 def test_the_same_bytes_on_one_core_and_in_a_second_checkout(limited, tmp_path, repository, monkeypatch):
-    """Points, summaries, and figures of both kinds; the kernel is copied (benchmarks/faults.py compiles it)."""
+    """Points, summaries, and figures of both kinds; the kernel is copied."""
     # The order of iteration over sets differs.
     monkeypatch.setenv("PYTHONHASHSEED", "1")
     checkout = tmp_path / "checkout"

@@ -16,7 +16,6 @@ from burridge_knopoff.claims.claim import Claim
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.formats import as_csv, as_json, as_markdown
 from burridge_knopoff.claims.margins import changing_choices
-from burridge_knopoff.claims.other_tolerances import other_tolerances
 from burridge_knopoff.claims.paper import CLAIMS
 from burridge_knopoff.claims.range import Range
 from burridge_knopoff.claims.rounding import (
@@ -61,7 +60,7 @@ def _claim_laws(parameters: Mapping[str, Any]) -> list[str]:
     return np.atleast_1d(parameters.get("laws", parameters.get("law", PAPER_LAWS))).tolist()
 
 
-def _add_changes(claim: Claim, evidence: Evidence, verdict: Verdict, others: Sequence[tuple[str, Evidence]]) -> Verdict:
+def _add_changes(claim: Claim, evidence: Evidence, verdict: Verdict) -> Verdict:
     """Return a verdict with the choices that would change it, and where other states or starts change the attractor.
 
     Under other starts a claim may have been judged already; otherwise the values of a are counted.
@@ -79,7 +78,7 @@ def _add_changes(claim: Claim, evidence: Evidence, verdict: Verdict, others: Seq
         changes += count_changes(
             rounded_state_changes(evidence, states, laws, a), "some states that round to {state} reach"
         )
-    choices = changing_choices(claim, partial(judge, claim), evidence, verdict, others)
+    choices = changing_choices(claim, partial(judge, claim), evidence, verdict)
     return replace(verdict, changes="; ".join(changes), changing_choices=choices)
 
 
@@ -103,12 +102,11 @@ def ledger(study: str, claims: Sequence[Claim], evidence: Evidence, figures: Col
     verdicts: dict[str, Verdict] = {}
     # A claim about other claims reads their verdicts from the evidence.
     judged = replace(evidence, verdicts=verdicts)
-    others = list(other_tolerances(judged))
     # Claims come after those on which they depend.
     by_name = {claim.name: claim for claim in claims}
     for name in TopologicalSorter({claim.name: claim.depends_on for claim in claims}).static_order():
         if name in by_name:
-            verdicts[name] = _add_changes(by_name[name], judged, judge(by_name[name], judged), others)
+            verdicts[name] = _add_changes(by_name[name], judged, judge(by_name[name], judged))
     independent = [verdicts[claim.name].verdict for claim in claims if not claim.depends_on]
     return {
         "study": study,

@@ -1,15 +1,14 @@
 """The margin of a verdict: which other choices and grids would change it.
 
 A tolerance is a choice. A reader should see which other sensible choices would change a verdict, or leave too little
-data to judge. The claim is judged again with other values of each of its choices (`choice`) and of the study's
-tolerances (`other_tolerances`); with every second value of a; at the neighbour of a named value of a; and without one
-of the values of a at which solvers are compared. If the claim depends on convention or reading, the verdicts under each
-count as well.
+data to judge. The claim is judged again with other values of each of its choices (`choice`); with every second value of
+a; at the neighbour of a named value of a; and without one of the values of a at which solvers are compared. If the
+claim depends on convention or reading, the verdicts under each count as well.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -28,12 +27,10 @@ def changing_choices(
     judge: Callable[[Evidence, Mapping[str, Any]], Verdict],
     evidence: Evidence,
     verdict: Verdict,
-    others: Iterable[tuple[str, Evidence]] = (),
 ) -> list[str]:
     """Return the choices that would change a verdict, each as «verdict if condition»; empty if none does.
 
     judge : judges the claim from evidence and parameters; verdict : its verdict for the claim's own
-    others : evidence for other tolerances of the study, each with its description, see `other_tolerances`
     """
     if verdict.verdict in OPEN:
         return []
@@ -53,7 +50,6 @@ def changing_choices(
         *(text for name in claim.choices for text in conditions(name)),
         *without(changed_verdict, evidence, parameters),
         *_neighbour_choices(changed_verdict, evidence, parameters),
-        *(f"{other} if {name}" for name, changed in others if (other := changed_verdict(changed, parameters))),
     ]
 
 

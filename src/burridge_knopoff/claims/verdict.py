@@ -70,7 +70,7 @@ class Verdict:
     conventions : verdict under each convention «contact, start», or under each reading of the claim, where it can be
         judged under each
     own : verdict under the study's convention, or under the first reading
-    changing_choices : other tolerances and grids that would change the verdict, see `margins`
+    changing_choices : other choices and grids that would change the verdict, see `margins`
     """
 
     verdict: str

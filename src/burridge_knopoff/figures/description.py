@@ -1,8 +1,6 @@
 """Descriptions of the figures, which rules, `snakemake --report` and the report of a study read without drawing.
 
-A module of this folder that assigns CAPTION is a figure. The first line of its docstring says what it shows and starts
-with an article rather than a proper name, so that it can follow "Draw". The module has a function `draw` and these
-plain constants:
+A module of this folder that assigns CAPTION is a figure. It has a function `draw` and these plain constants:
 
 TITLE, CATEGORY : for a reader; PAPER : figures of the paper that it reproduces, as "Fig. 2"
 CAPTION : what is seen; {initial} stands for an initial state
@@ -16,7 +14,7 @@ FILE : name of the picture, if it is not that of the module
 from __future__ import annotations
 
 import ast
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -27,7 +25,6 @@ class Description:
     """The description of a figure, from its module."""
 
     name: str
-    subject: str
     title: str
     category: str
     caption: str
@@ -65,11 +62,6 @@ def figure_descriptions() -> tuple[Description, ...]:
     return tuple(sorted(figures, key=lambda figure: (not figure.paper, figure.paper.lstrip("Figs. "), figure.name)))
 
 
-def picture_names(states: Collection[str]) -> set[str]:
-    """Return the names, without suffix, of all pictures of a study with the given initial states."""
-    return {_fill(figure.file, {"initial": state}) for figure in figure_descriptions() for state in states}
-
-
 def title_and_caption(file: str) -> tuple[str, str]:
     """Return title and caption of a picture from its file name.
 
@@ -92,5 +84,4 @@ def _description(path: Path) -> Description | None:
         return None
     names = ("TITLE", "CATEGORY", "CAPTION", "INPUTS", "FROM_STUDY", "OVER", "CONDITION", "PAPER", "FILE")
     fields = {name.lower(): ast.literal_eval(constants[name]) for name in names if name in constants}
-    headline = (ast.get_docstring(module) or "").partition("\n")[0]
-    return Description(path.stem, headline[:1].lower() + headline[1:], **{"file": path.stem, **fields})
+    return Description(path.stem, **{"file": path.stem, **fields})

@@ -47,7 +47,7 @@ def _nearest_distances(first: np.ndarray, tree: cKDTree, bound: float) -> np.nda
     return nearest
 
 
-def spacing_of(returns: np.ndarray, share: float = NEAR_SHARE) -> float:
-    """Return the distance within which the fraction `share` of the returns, shape (n, 2 blocks), have a neighbour."""
+def spacing_of(returns: np.ndarray) -> float:
+    """Return the distance within which the share NEAR_SHARE of the returns, shape (n, 2 blocks), have a neighbour."""
     nearest, _ = cKDTree(returns).query(returns, k=2, p=np.inf)
-    return float(np.quantile(nearest[:, 1], share))
+    return float(np.quantile(nearest[:, 1], NEAR_SHARE))

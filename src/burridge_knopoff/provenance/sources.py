@@ -21,7 +21,7 @@ PACKAGE = Path(__file__).parents[1]
 SCRIPTS = PACKAGE.parents[1] / "workflow/scripts"
 
 #: Code that moves bytes, reads arguments, words messages or names sources. No number depends on it, so its changes
-#: invalidate nothing: `benchmarks/left_out.py` tries random ones.
+#: invalidate nothing.
 PLUMBING = (
     "__init__.py",
     "cli/",

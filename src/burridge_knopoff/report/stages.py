@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +13,6 @@ SKIPPED = ("report",)
 
 #: Prefixes of files that form one stage, with its name.
 JOINED = {"figure_": "figures"}
-
 
 #: Snakemake's unit of memory, in MB.
 MEBIBYTE = 1.048576
@@ -36,20 +35,16 @@ class Stage:
     memory: float = 0.0
 
 
-def read_stages(
-    folder: str | Path, *, joined: Mapping[str, str] = JOINED, skipped: Collection[str] = SKIPPED
-) -> list[Stage]:
+def read_stages(folder: str | Path) -> list[Stage]:
     """Return the stages in a folder of benchmark files, longest wall time first; none if there is no folder.
 
-    The files of a subfolder form one stage, together with the file of the same name.
-
-    joined : {prefix of files that form one stage: its name}; skipped : names of stages to leave out
+    The files of a subfolder form one stage, together with the file of the same name; those of all figures form one.
     """
     stages: dict[str, Stage] = {}
     for path in sorted(Path(folder).rglob("*.tsv")):
         name = path.relative_to(folder).with_suffix("").parts[0]
-        name = next((whole for start, whole in joined.items() if name.startswith(start)), name)
-        for wall, cpu, memory in job_costs(path) if name not in skipped else ():
+        name = next((whole for start, whole in JOINED.items() if name.startswith(start)), name)
+        for wall, cpu, memory in job_costs(path) if name not in SKIPPED else ():
             stage = stages.setdefault(name, Stage(name))
             stage.jobs += 1
             stage.wall += wall

@@ -9,6 +9,7 @@ from burridge_knopoff.model.initial import PAPER_V, PaperState, has_paper_number
 from burridge_knopoff.model.parameters import remarks_on_states
 from burridge_knopoff.provenance.record import read_study_record
 from burridge_knopoff.running.cost import cost_note, is_stiff
+from burridge_knopoff.study.stages import missing_library
 from burridge_knopoff.study.study import Study
 
 #: Most rules that a line names.
@@ -42,6 +43,9 @@ def _part_remarks(study: Study, config: Mapping[str, Any]) -> Iterator[str]:
         yield "basins: no map, since no default value of basins.a is on the grid; set basins.a"
     if "claims" not in study.omitted_stages and not study.has_paper_chain:
         yield "claims: none, since they are about the paper's chain of 3 blocks"
+    library = missing_library("proof")
+    if library and study.omission("proof") == library and study.proved_laws:
+        yield f"proof: none, since {library}"
 
 
 def _state_remarks(study: Study) -> Iterator[str]:

@@ -21,7 +21,7 @@ from burridge_knopoff.study.grid import parameters_of
 from burridge_knopoff.study.model import MODEL_KEYS, model_of
 from burridge_knopoff.study.paper import PAPER_A
 from burridge_knopoff.study.paths import point_file
-from burridge_knopoff.study.stages import CHAIN_LENGTHS, STAGES
+from burridge_knopoff.study.stages import CHAIN_LENGTHS, STAGES, missing_library
 from burridge_knopoff.study.yaml_file import ConfigError
 
 
@@ -103,13 +103,6 @@ class Study:
         """The law in the figures of single runs."""
         return self.config["figures"]["law"]
 
-    def shown_runs(self, wildcards: Mapping[str, str]) -> dict[str, Any]:
-        """Return `points` for the figures of single runs, with one initial state if a wildcard names it."""
-        points, law = self.points, self.shown_law
-        initial = {name: state for name, state in points["initial"].items() if wildcards.get("initial", name) == name}
-        only = {key: {law: points[key][law]} for key in ("laws", "settings")}
-        return {**points, **only, "initial": initial, "parameters": {"a": {self.shown_point: self.shown_a}}}
-
     @property
     def law_descriptions(self) -> dict[str, dict[str, Any]]:
         """The laws by name, as the config describes them."""
@@ -174,7 +167,7 @@ class Study:
         if over == "a" and self.is_plane:
             return "a study of several parameters has none: `a: …` in place of `grid: …`"
         if stage not in self.omitted_stages:
-            return ""
+            return missing_library(stage)
         without, needed = self.config["without"], STAGES[stage]
         names = " and ".join(name for name in (stage, needed) if name in without)
         needs = f", which needs {needed}" if needed in without else ""

@@ -17,7 +17,5 @@ from burridge_knopoff.claims.paper import (  # isort: skip
 )
 from burridge_knopoff.claims.claim import CLAIMS
 
-#: Summaries that the ledger itself reads: for rounded initial states, other tolerances, and the depth of the search.
-OWN = ("attractors", "agreement", "lyapunov", "mean_distance", "runs", "two_blocks", "refined")
 #: Summaries on which the ledger depends: a change of any other leaves it up to date.
-READS = tuple(sorted({*OWN, *(name for claim in CLAIMS.values() for name in claim.reads)}))
+READS = tuple(sorted({name for claim in CLAIMS.values() for name in claim.reads}))
