@@ -17,7 +17,6 @@ from burridge_knopoff.provenance.record import read_study_record, write_study_re
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import Study
-from burridge_knopoff.summaries.points import Grid
 from tests.workflow.snakemake import run_workflow
 
 ROOT = Path(__file__).parents[1]
@@ -87,11 +86,6 @@ class SmallStudy:
 
     study: Study
     folder: Path
-
-    @property
-    def grid(self) -> Grid:
-        """Its points."""
-        return Grid.from_points(self.folder / "points", self.study.points)
 
     @property
     def models(self) -> list[Model]:

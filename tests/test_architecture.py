@@ -2,6 +2,7 @@
 
 import ast
 import re
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -21,18 +22,20 @@ def levels():
     return {name: len(names) - number for number, row in enumerate(names) for name in row}
 
 
-def imports(path):
-    """Return the subpackages that a file imports from, also for types, or by a name in a text."""
-    rooms = set()
+def modules(path):
+    """Return the names that a file imports, also for types, or that stand in a text; a name may be of an attribute."""
+    names = set()
     for node in ast.walk(ast.parse(path.read_text())):
-        names = []
         if isinstance(node, ast.ImportFrom) and node.module:
-            module = node.module
-            names = [f"{module}.{alias.name}" for alias in node.names] if module == "burridge_knopoff" else [module]
+            names |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
         elif isinstance(node, ast.Constant) and isinstance(node.value, str):
-            names = re.findall(r"^burridge_knopoff(?:\.\w+)+$", node.value)
-        rooms |= {name.split(".")[1] for name in names if name.startswith("burridge_knopoff.")}
-    return rooms & ROOMS
+            names |= {*re.findall(r"^burridge_knopoff(?:\.\w+)+$", node.value)}
+    return names
+
+
+def imports(path):
+    """Return the subpackages that a file imports from."""
+    return {name.split(".")[1] for name in modules(path) if name.startswith("burridge_knopoff.")} & ROOMS
 
 
 def subpackage_of(path):
@@ -48,6 +51,12 @@ def test_a_subpackage_imports_only_from_below(room):
     for path in (path for path in PACKAGE.rglob("*.py") if subpackage_of(path) == room):
         for other in imports(path) - {room}:
             assert floor[other] < floor[room], f"{path}: {other}"
+
+
+def test_no_file_imports_itself_by_way_of_others():
+    """Files of a subpackage have an order too: each can be read after those that it imports, also for types."""
+    names = {".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts): path for path in PACKAGE.rglob("*.py")}
+    TopologicalSorter({name: modules(path) & names.keys() - {name} for name, path in names.items()}).prepare()
 
 
 def test_every_subpackage_is_in_the_picture():

@@ -43,17 +43,19 @@ from pathlib import Path
 from burridge_knopoff import simulate
 from burridge_knopoff.cli import main
 from burridge_knopoff.figures.largest_velocity import draw
+from burridge_knopoff.study.study import all_points
 from burridge_knopoff.summaries.largest_velocity import summarize
 from tests.grids import grid_of
 options = {"transient": 4.0, "window": 26.0, "batches": 2, "trajectory": 26.0, "trajectory_sampling": 0.01}
 laws = {"linearized": {}, "quadratic": {}}
-grid = grid_of(Path("points"), ["plus"], {"0.1": 0.1, "0.3": 0.3}, {"laws": laws}, **options)
+study, results = grid_of(Path("results"), ["plus"], {"0.1": 0.1, "0.3": 0.3}, {"laws": laws}, **options)
 words = [f"--{key.replace('_', '-')}={value}" for key, value in options.items()]
-for _, (law, initial, a) in grid:
-    out = str(grid.path(law, initial, a))
-    Path(out).parent.mkdir(parents=True, exist_ok=True)
-    assert main(["simulate", "--law", law, "--a", a, "--initial", initial, *words, "--out", out]) == 0
-summary = summarize(grid)
+for point in all_points(study):
+    out = results / study.run_file(**point)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    chosen = [f"--{name}={value}" for name, value in point.items()]
+    assert main(["simulate", *chosen, *words, "--out", str(out)]) == 0
+summary = summarize(study, results)
 for law in laws:
     run = simulate(law, 0.3, "plus", **options)
     value = summary["window_largest_velocity"].sel(law=law, initial="plus", a=0.3).values

@@ -19,7 +19,7 @@ from burridge_knopoff.provenance.files import remove_links, reserve_room, write_
 from burridge_knopoff.provenance.keys import nested
 from burridge_knopoff.provenance.origin import OWN_ATTRIBUTES, Origin, check_origin, other_params, with_origin
 from burridge_knopoff.provenance.record import NAME, read_study_record, study_folder
-from burridge_knopoff.summaries.points import Grid
+from burridge_knopoff.study.study import Study
 
 
 class Job:
@@ -64,9 +64,9 @@ class Job:
         return self.wildcards.law
 
     @property
-    def points(self) -> Grid:
-        """The points that the keys of its config describe."""
-        return Grid.of_config(self.results / "points", self.config)
+    def study(self) -> Study:
+        """The part of the study that the keys of its config describe."""
+        return Study.of_keys(self.config)
 
     def paths(self, name: str) -> list[Path]:
         """Return the input files of a name."""

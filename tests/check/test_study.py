@@ -18,7 +18,7 @@ from burridge_knopoff.provenance.bad_file import BadFile
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.show.result import open_result
 from burridge_knopoff.study.recorded import recorded_study
-from burridge_knopoff.summaries.points import Grid, open_point
+from burridge_knopoff.summaries.points import open_point
 from tests.check.conftest import change_record
 from tests.check.damages import DAMAGES, POINT, cut, rewrite
 from tests.forged import forge
@@ -45,9 +45,9 @@ def test_a_sound_study(results, capsys):
 def test_a_bad_point_is_refused_and_listed_with_the_command_that_remakes_it(results, capsys, damage):
     spoil, words = DAMAGES[damage]
     spoil(results / POINT)
-    grid = Grid.from_points(results / "points", recorded_study(results)[1].points)
+    study = recorded_study(results)[1]
     with pytest.raises(BadFile) as caught:
-        open_point(grid, "linearized", "minus", "0.2000")
+        open_point(study, results, {"law": "linearized", "initial": "minus", "a": "0.2000"})
     reason, kind = caught.value.reason, caught.value.kind
     assert words in reason
     assert reason.isprintable()

@@ -45,8 +45,8 @@ def small(small_studies):
 
 @pytest.fixture(scope="module")
 def point(small):
-    study, grid = small.study, small.grid
-    return to_dataset(run(study.model("linearized", 0.2), grid.initial["minus"], grid.settings["linearized"]))
+    study = small.study
+    return to_dataset(run(study.model("linearized", 0.2), study.state("minus"), study.settings("linearized")))
 
 
 @pytest.mark.parametrize("count", STATES)

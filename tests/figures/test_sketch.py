@@ -2,11 +2,12 @@
 
 import pytest
 
+from burridge_knopoff import Chain
 from burridge_knopoff.figures.sketch import draw
 
 
 def words(**chain):
-    return [text.get_text() for text in draw(chain).axes[0].texts]
+    return [text.get_text() for text in draw(Chain(**chain)).axes[0].texts]
 
 
 def test_the_paper_s_chain_has_twice_as_strong_a_spring_at_its_middle_block():

@@ -19,9 +19,9 @@ def small(request, small_studies):
 
 def figures_of(small):
     """Yield name and figure, drawn as the workflow does."""
-    study, summaries, grid = small.study, small.summaries, small.grid
+    study, summaries = small.study, small.summaries
     law, initial = study.config["figures"]["law"], study.initial[0]
-    point = to_dataset(run(study.model(law, 0.2), grid.initial[initial], grid.settings[law]))
+    point = to_dataset(run(study.model(law, 0.2), study.state(initial), study.settings(law)))
     for figure in figure_descriptions():
         missing = not figure.of_points and not set(figure.inputs) <= set(summaries)
         if missing or (figure.condition and not getattr(study, figure.condition)):

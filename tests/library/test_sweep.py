@@ -18,12 +18,20 @@ def test_a_sweep_has_the_numbers_of_single_runs():
     runs = sweep("nonlinear", A, "plus", **options)
     assert runs["a"].values.tolist() == A
     for a in A:
-        run = simulate("nonlinear", a, "plus", **options)
-        for name, values in runs.sel(a=a).drop_vars("status").data_vars.items():
-            assert np.array_equal(values, getattr(run, name), equal_nan=True), name
+        run = simulate("nonlinear", a, "plus", **options).to_dataset()
+        for name, values in runs.sel(a=a).data_vars.items():
+            assert np.array_equal(values, run[name], equal_nan=True), name
     assert {"mean_distance", "mean_distance_error", "lyapunov_exponent", "status"} <= set(runs.data_vars)
+    assert runs["initial_velocity"].dims == ("a", "block")
     assert all(item.dims[0] == "a" for item in runs.data_vars.values())
     assert runs["mean_distance"].attrs["units"] == "1"
+
+
+def test_the_variables_that_are_left_out_are_those_over_the_named_dimensions():
+    run = simulate("linearized", 0.1, **SHORT).to_dataset()
+    missing = set(run.variables) - set(sweep("linearized", 0.1, **SHORT).variables)
+    named = sweep.__doc__.partition("are left out")[2].partition(". ")[0]
+    assert missing == {name for name, item in run.variables.items() if any(f"`{key}`" in named for key in item.dims)}
 
 
 def test_a_model_and_the_number_of_cores():
@@ -50,9 +58,9 @@ def test_a_grid_over_several_parameters_has_the_numbers_of_single_runs(law, axes
     assert runs["mean_distance"].dims == tuple(sorted(axes, key=lambda name: name != "a"))
     for values in product(*axes.values()):
         point = dict(zip(axes, values, strict=True))
-        run = simulate(model.at(**point), initial="plus", **SHORT)
-        for name, numbers in runs.sel(point).drop_vars("status").data_vars.items():
-            assert np.array_equal(numbers, getattr(run, name), equal_nan=True), (name, point)
+        run = simulate(model.at(**point), initial="plus", **SHORT).to_dataset()
+        for name, numbers in runs.sel(point).data_vars.items():
+            assert np.array_equal(numbers, run[name], equal_nan=True), (name, point)
 
 
 def test_the_number_of_one_block_is_a_dimension():

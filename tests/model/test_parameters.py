@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, FormulaLaw, Model, law_of
-from burridge_knopoff.model.parameters import parameter_names, parameter_value, set_parameters
 from tests.refused import refused
 
 MODEL = Model(Chain(3, pulling=1.5), law_of("stribeck", 0.3), v=0.2)
@@ -12,8 +11,8 @@ MODEL = Model(Chain(3, pulling=1.5), law_of("stribeck", 0.3), v=0.2)
 
 def test_the_names_are_those_of_the_law_the_driver_and_the_chain():
     names = "a", "sigma", "eta", "v", "coupling", "damping", "pulling", "threshold", "mass", "pulling_damping"
-    assert parameter_names(MODEL) == names
-    assert [parameter_value(MODEL, name) for name in names] == [0.3, 0.05, 0.2, 0.2, 1.0, 0.0, 1.5, 1.0, 1.0, 0.0]
+    assert MODEL.parameter_names == names
+    assert [MODEL.parameter(name) for name in names] == [0.3, 0.05, 0.2, 0.2, 1.0, 0.0, 1.5, 1.0, 1.0, 0.0]
 
 
 def test_a_model_with_changed_parameters_equals_one_built_from_them():
@@ -23,9 +22,9 @@ def test_a_model_with_changed_parameters_equals_one_built_from_them():
         law_of("stribeck", 0.4, {"sigma": 0.1, "eta": 0.3}),
         v=0.1,
     )
-    assert MODEL.at(**numbers) == set_parameters(MODEL, numbers) == expected
-    assert all(parameter_value(expected, name) == value for name, value in numbers.items())
-    assert set_parameters(MODEL, {}) == MODEL
+    assert MODEL.at(**numbers) == expected
+    assert all(expected.parameter(name) == value for name, value in numbers.items())
+    assert MODEL.at() == MODEL
     assert MODEL.at(0.4) == MODEL.at(a=0.4) == Model(MODEL.chain, MODEL.law.at(0.4), 0.2)
     # Cached properties of the chain are kept.
     assert MODEL.at(v=0.3).chain is MODEL.chain
@@ -57,11 +56,11 @@ DRAWN = Model(Chain(3, threshold="random=uniform,low=0.9,high=1.1,seed=1"), MODE
     ],
 )
 def test_the_parameter_of_one_block_or_spring(model, parameters, chain):
-    changed = set_parameters(model, parameters)
+    changed = model.at(**parameters)
     assert changed == Model(chain, model.law, model.v)
     for name, value in parameters.items():
         if name.endswith("]"):
-            assert parameter_value(changed, name) == value
+            assert changed.parameter(name) == value
 
 
 def test_the_last_spring_of_a_ring_joins_the_last_block_to_the_first():
@@ -73,7 +72,7 @@ def test_the_last_spring_of_a_ring_joins_the_last_block_to_the_first():
 def test_the_random_numbers_of_the_other_blocks_are_kept():
     chain = DRAWN.at(**{"threshold[2]": 1.5}).chain
     assert chain.thresholds.tolist() == [DRAWN.chain.thresholds[0], 1.5, DRAWN.chain.thresholds[2]]
-    assert DRAWN.at(**{"threshold[2]": parameter_value(DRAWN, "threshold[2]")}).chain.is_equivalent_to(DRAWN.chain)
+    assert DRAWN.at(**{"threshold[2]": DRAWN.parameter("threshold[2]")}).chain.is_equivalent_to(DRAWN.chain)
 
 
 def test_the_contact_and_the_shape_of_the_chain_are_kept():
@@ -85,22 +84,22 @@ def test_the_contact_and_the_shape_of_the_chain_are_kept():
 @pytest.mark.parametrize(
     ("model", "parameters", "words"),
     [
-        (MODEL, {"drop": 0.1}, "drop"),
-        (MODEL, {"mass[4]": 1.0}, "mass[4]"),
-        (MODEL, {"mass[0]": 1.0}, "mass[0]"),
-        (MODEL, {"coupling[3]": 1.0}, "coupling[3]"),
-        (Model(Chain(1), MODEL.law), {"coupling[1]": 1.0}, "coupling[1]"),
-        (Model(Chain(grid=(2, 2)), MODEL.law), {"coupling[1]": 1.0}, "coupling[1]"),
+        (MODEL, {"drop": 0.1}, "drop: not a parameter of this model, expected a | sigma | eta | v"),
+        (MODEL, {"mass[4]": 1.0}, "mass[4]: block 4, expected 1 to 3"),
+        (MODEL, {"mass[0]": 1.0}, "mass[0]: block 0, expected 1 to 3"),
+        (MODEL, {"coupling[3]": 1.0}, "coupling[3]: spring 3, expected 1 to 2"),
+        (Model(Chain(1), MODEL.law), {"coupling[1]": 1.0}, "coupling[1]: spring 1, expected none"),
+        (Model(Chain(grid=(2, 2)), MODEL.law), {"coupling[1]": 1.0}, "coupling[1]: one spring of a network"),
         (MODEL, {"mass[3]": 0.0}, "mass[3]: 0.0"),
         (MODEL, {"mass[3]": None}, "mass[3]: None"),
-        (MODEL, {"mass[03]": 1.0}, "'mass[03]'"),
-        (MODEL, {"v[1]": 1.0}, "'v[1]'"),
-        (Model(Chain(2, pulling=(1.0, 0.0)), MODEL.law), {"pulling[1]": 0.0}, "chain.pulling: (0.0, 0.0)"),
+        (MODEL, {"mass[03]": 1.0}, "'mass[03]': not a parameter of this model"),
+        (MODEL, {"v[1]": 1.0}, "'v[1]': not a parameter of this model"),
+        (Model(Chain(2, pulling=(1.0, 0.0)), MODEL.law), {"pulling[1]": 0.0}, "pulling: (0.0, 0.0)"),
         (MODEL, {"v": 0}, "v: 0"),
         (MODEL, {"v": True}, "v: True"),
         (MODEL, {"a": None}, "a: None"),
         (MODEL, {"mass": [1.0, 1.0, 1.0]}, "mass: [1.0, 1.0, 1.0]"),
-        (MODEL, {"coupling": -1.0}, "chain.coupling: -1.0"),
+        (MODEL, {"coupling": -1.0}, "coupling: -1.0"),
         (Model(Chain(2, mass=(1.0, 2.0)), MODEL.law), {"mass": 1.0}, "mass: (1.0, 2.0)"),
         (
             Model(Chain(2, threshold="random=uniform,low=0.9,high=1.1,seed=1"), MODEL.law),
@@ -110,15 +109,15 @@ def test_the_contact_and_the_shape_of_the_chain_are_kept():
         (
             Model(Chain(2), FormulaLaw(0.1, "1/(1 + a*u*mass)", mass=2.0)),
             {"mass": 1.0},
-            "mass",
+            "mass: got a parameter of both the law",
         ),
     ],
 )
 def test_unknown_parameters_are_refused(model, parameters, words):
-    with refused(words):
-        set_parameters(model, parameters)
+    with refused(words, match="expected"):
+        model.at(**parameters)
 
 
 def test_a_parameter_given_as_a_word_is_refused():
-    with refused("pulling: 'neighbours'"):
-        parameter_value(Model(Chain(3), MODEL.law), "pulling")
+    with refused("pulling: 'neighbours'", match="expected one number"):
+        Model(Chain(3), MODEL.law).parameter("pulling")

@@ -3,7 +3,6 @@
 import numpy as np
 
 from burridge_knopoff import Chain, ChainState, Model, law_of
-from burridge_knopoff.model.own_units import a_unit
 from burridge_knopoff.periodic_orbits.flow import rate
 from burridge_knopoff.periodic_orbits.grazing_distances import _derivatives
 
@@ -33,4 +32,4 @@ def test_forces_are_divided_by_masses():
 
 def test_the_scale_of_a_is_that_of_damping():
     """In suitable units of time and a, a block of mass m moves as one of mass 1."""
-    assert a_unit(Chain(3, mass=4.0)) == 2.0 * a_unit(Chain(3))
+    assert Chain(3, mass=4.0).a_unit == 2.0 * Chain(3).a_unit

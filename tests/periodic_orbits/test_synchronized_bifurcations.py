@@ -13,7 +13,6 @@ from burridge_knopoff.periodic_orbits.flow import flow
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
 from burridge_knopoff.periodic_orbits.pitchfork import displace_end_blocks
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import (
-    a_unit,
     bifurcations_of,
     critical_a,
     critical_a_error,
@@ -148,7 +147,7 @@ def test_transitions_are_found_on_the_scale_of_the_chain(critical, bifurcations,
     springs = {"coupling": strength, "pulling": (strength, 2.0 * strength, strength)}
     orbits = synchronized_orbits(Model(Chain(3, threshold=threshold, **springs), law_of("linearized", 0.0)))
     factor = strength**0.5 / threshold
-    assert a_unit(orbits.model.chain) == pytest.approx(factor)
+    assert orbits.model.chain.a_unit == pytest.approx(factor)
     located = bifurcations_of(orbits)
     assert critical_a(located) == pytest.approx(factor * critical["linearized"], rel=1e-9)
     assert grazing_a(located, block=1) == pytest.approx(

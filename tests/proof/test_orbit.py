@@ -118,6 +118,8 @@ def test_bounds_of_speed_and_force_agree_with_a_run(proved, family):
     ):
         assert float(value) / 0.1 == pytest.approx(float(bound.upper()), rel=0.05)
         assert float(value) / 0.1 < bound.upper()
+    assert run.least_friction == pytest.approx(float(proved.friction_range(0.1).lower()), rel=0.002)
+    assert run.least_friction > proved.friction_range(0.1).lower()
 
 
 def test_a_wrong_guess_is_refused(family):

@@ -2,6 +2,7 @@
 
 import base64
 import zlib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,21 +10,17 @@ import pytest
 from burridge_knopoff.report import trajectories
 from burridge_knopoff.report.trajectories import EVERY, embedded_trajectories
 from burridge_knopoff.study.load import load_study
-from burridge_knopoff.summaries.points import Grid, read_point
+from burridge_knopoff.study.study import all_points
+from burridge_knopoff.summaries.points import read_point
 from tests.small_study import SMALL, STUDIES
 
 
-def grid_of(poor):
-    return Grid.from_points(poor.folder / "points", poor.study.points)
-
-
 def test_the_blocks_move_as_in_the_point_files(poor):
-    grid = grid_of(poor)
-    embedded = embedded_trajectories(grid)
+    embedded = embedded_trajectories(poor.study, poor.folder)
     steps = np.frombuffer(zlib.decompress(base64.b64decode(embedded["packed"])), "i1")
     start, moved = 0, 0
-    for number, (_, point) in enumerate(grid):
-        run = read_point(grid, point, ("position", "velocity"))
+    for number, point in enumerate(all_points(poor.study)):
+        run = read_point(poor.study, poor.folder, point, ("position", "velocity"))
         position, velocity = (run[name][::-EVERY][: embedded["frames"][number] + 1][::-1] for name in run)
         count, unit = embedded["frames"][number], embedded["units"][number]
         increments = steps[start : start + 2 * count].reshape(2, count).T.astype(int)
@@ -41,11 +38,11 @@ def test_the_blocks_move_as_in_the_point_files(poor):
 
 def test_a_large_study_has_the_runs_at_some_values_of_a(poor, monkeypatch):
     monkeypatch.setattr(trajectories, "LARGEST", 1)
-    embedded = embedded_trajectories(grid_of(poor))
+    embedded = embedded_trajectories(poor.study, poor.folder)
     assert embedded["every"] >= len(poor.study.grid)
     assert len(embedded["units"]) == len(poor.study.laws) * len(poor.study.initial)
 
 
 def test_a_ring_is_not_drawn_as_a_chain():
     study = load_study({**SMALL, **STUDIES["ring"]}, "ring.yaml")
-    assert embedded_trajectories(Grid.from_points("points", study.points)) is None
+    assert embedded_trajectories(study, Path("results")) is None

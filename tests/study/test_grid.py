@@ -48,7 +48,7 @@ def test_the_value_of_one_block_is_a_parameter():
     assert [study.run_of(**point)[0].chain.masses.tolist() for point in points[:2]] == [[1.0, 1.0], [1.0, 1.5]]
     assert "--mass 1.0,1.5" in study.command(**points[1])
     assert not any(letter in name for name in run_files(study) for letter in "[]")
-    assert study.chain_description["mass"] == (1.0, 1.0)
+    assert study.chain.mass == (1.0, 1.0)
     # A number for all blocks, and one for a single block.
     both = load(grid={"a": [0.2], "mass[2]": [1.0, 1.5], "mass": [1.0, 2.0]})
     masses = {tuple(both.run_of(**point)[0].chain.masses.tolist()) for point in all_points(both)}

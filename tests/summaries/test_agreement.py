@@ -12,6 +12,7 @@ from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.study.study import all_points
 from burridge_knopoff.summaries import agreement
 from burridge_knopoff.summaries.judgement import compare_laws
 from tests.grids import grid_of
@@ -29,34 +30,37 @@ def runs():
 
 @pytest.fixture
 def compare(runs, tmp_path):
-    """Write the runs, some of them altered, and return their grid with the comparison."""
+    """Write the runs, some of them altered, and return their study and its folder with the comparison."""
 
     def compared(altered=(), **reached):
-        grid = grid_of(tmp_path, ["minus"], {"0.0500": 0.05, "0.0800": 0.08}, **SETTINGS)
-        for _, (law, initial, a) in grid:
-            key = law, grid.a[a]
-            write_point(dataclasses.replace(runs[key], **dict(altered).get(key, {})), grid.path(law, initial, a))
-        return grid, summarize_kinds(grid, attractors_of(grid, **reached))
+        grid = study, _ = grid_of(tmp_path, ["minus"], {"0.0500": 0.05, "0.0800": 0.08}, **SETTINGS)
+        for point in all_points(study):
+            key = point["law"], study.value(point["a"])
+            write_point(
+                dataclasses.replace(runs[key], **dict(altered).get(key, {})), tmp_path / study.run_file(**point)
+            )
+        return grid, summarize_kinds(grid, attractors_of(study, **reached))
 
     return compared
 
 
 @pytest.fixture(scope="module")
 def read(runs, tmp_path_factory):
-    """The grid of the runs, and what is read from their files."""
-    grid = grid_of(tmp_path_factory.mktemp("runs"), ["minus"], {"0.0500": 0.05, "0.0800": 0.08}, **SETTINGS)
-    for _, (law, initial, a) in grid:
-        write_point(runs[law, grid.a[a]], grid.path(law, initial, a))
-    return grid, scalars(grid), kinds(grid, MOTION), agreement.compare_events(grid)
+    """The study of the runs, and what is read from their files."""
+    results = tmp_path_factory.mktemp("runs")
+    grid = study, _ = grid_of(results, ["minus"], {"0.0500": 0.05, "0.0800": 0.08}, **SETTINGS)
+    for point in all_points(study):
+        write_point(runs[point["law"], study.value(point["a"])], results / study.run_file(**point))
+    return study, scalars(*grid), kinds(*grid, MOTION), agreement.compare_events(*grid)
 
 
 def kinds_with(read, mean_distance, run_kind, **reached):
     """Return the comparison of runs that all have one exact ⟨J⟩ and kind, with attractors, see `attractors_of`."""
-    grid, means, of_runs, events = read
+    study, means, of_runs, events = read
     values = {"mean_distance": mean_distance, "mean_distance_error": 0.0}
     means = means.assign({name: xarray.full_like(means[name], value) for name, value in values.items()})
     of_runs = of_runs.assign(run_kind=xarray.full_like(of_runs["run_kind"], run_kind))
-    return compared_with(means, of_runs, events, attractors_of(grid, **reached))
+    return compared_with(means, of_runs, events, attractors_of(study, **reached))
 
 
 def compared_with(*summaries):
@@ -65,7 +69,7 @@ def compared_with(*summaries):
 
 def summarize_kinds(grid, *attractors):
     """Return the comparison of the runs in the files of a grid."""
-    return compared_with(scalars(grid), kinds(grid, MOTION), agreement.compare_events(grid), *attractors)
+    return compared_with(scalars(*grid), kinds(*grid, MOTION), agreement.compare_events(*grid), *attractors)
 
 
 def test_without_attractors_it_is_undetermined_which_runs_settled(compare):
@@ -75,9 +79,9 @@ def test_without_attractors_it_is_undetermined_which_runs_settled(compare):
     xarray.testing.assert_identical(other.drop_vars("settled"), dataset.drop_vars("settled"))
 
 
-def attractors_of(grid, mean=0.0, error=0.0, branch=0, kind=-1, v=0.1):
+def attractors_of(study, mean=0.0, error=0.0, branch=0, kind=-1, v=0.1):
     """Return attractors of one ⟨J⟩, branch and kind at all a, which all states reach under the study's conventions."""
-    laws, states, a = grid.laws, list(grid.initial), list(grid.a.values())
+    laws, states, a = study.laws, list(study.initial), list(study.grid.values())
     labels = {"law": list(laws), "contact": ["here", "there"], "start": ["now", "then"], "initial": states, "a": a}
     slot = xarray.DataArray(np.zeros((len(laws), len(a), 2)), dims=("law", "a", "attractor"))
     initial_branch = xarray.DataArray(np.full([len(item) for item in labels.values()], 9), labels, tuple(labels))
@@ -222,7 +226,7 @@ def test_a_run_without_result_agrees_with_nothing(compare):
     assert f"no value of a could be compared. {reason}" in words
     assert agreement.table(dataset).count("undetermined") == 6
     assert (dataset["kind"].sel(law="linearized") == -1).all()
-    part = means(grid).sel(law="linearized")
+    part = means(*grid).sel(law="linearized")
     assert np.isnan(part["mean_distance"]).all()
     assert (part["synchronized"] == 0).all()
     assert (part["status"] == 1).all()
@@ -231,7 +235,7 @@ def test_a_run_without_result_agrees_with_nothing(compare):
 def of_laws(folder, laws):
     settings = {"transient": 100.0, "window": 100.0, "batches": 2}
     grid = grid_of(folder, ["minus"], {"0.05": 0.05, "0.2": 0.2}, {"laws": laws}, **settings)
-    return summarize_kinds(write_points(grid), attractors_of(grid))
+    return summarize_kinds(write_points(*grid), attractors_of(grid[0]))
 
 
 def test_each_law_is_compared_with_the_first(tmp_path):

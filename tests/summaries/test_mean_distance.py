@@ -19,8 +19,8 @@ def test_settling_times_of_runs(tmp_path):
     run = simulate("linearized", 0.08, "minus", **settings)
     grid = grid_of(tmp_path, ["minus"], {"0.0800": 0.08}, **settings)
     ended = {"linearized": "completed", "nonlinear": "step_limit"}
-    write_points(grid, lambda trajectory: dataclasses.replace(trajectory, status=ended[trajectory.model.law.name]))
-    times = means(grid)["settling_time"]
+    write_points(*grid, lambda trajectory: dataclasses.replace(trajectory, status=ended[trajectory.model.law.name]))
+    times = means(*grid)["settling_time"]
     # Near synchrony J decays like the transverse multiplier to the power of the number of periods.
     settled = times.sel(law="linearized", initial="minus", a=0.08)
     np.testing.assert_array_equal(settled.values, run.settling_time)
@@ -32,8 +32,8 @@ def test_settling_times_of_runs(tmp_path):
 def test_the_least_friction_in_the_window_is_not_that_of_the_transient(tmp_path):
     """From plus, the first slips are eight times as fast as those on the attractor."""
     grid = grid_of(tmp_path, ["plus"], {"0.0800": 0.08}, transient=500.0, window=100.0, batches=2)
-    write_points(grid)
-    dataset = means(grid).sel(initial="plus", a=0.08)
+    write_points(*grid)
+    dataset = means(*grid).sel(initial="plus", a=0.08)
     for law in ("linearized", "nonlinear"):
         whole, window = (dataset[name].sel(law=law).item() for name in ("least_friction", "window_least_friction"))
         assert whole < 0.9 < 0.97 < window < 1.0
@@ -68,11 +68,11 @@ def test_only_a_chain_that_is_its_own_mirror_image_synchronizes(tmp_path, thresh
     models = {"laws": {"linearized": {}}, "chain": {**PAPER_MODELS["chain"], "threshold": thresholds}}
     grid = grid_of(tmp_path, ["minus"], {"0.0800": 0.08}, models, **SHORT)
     values = {"mean_distance": 1e-9, "lyapunov_exponent": np.array([0.0, -0.1, -0.2])}
-    write_points(grid, lambda trajectory: same_section(trajectory, **values))
-    answers = means(grid)["synchronized"]
+    write_points(*grid, lambda trajectory: same_section(trajectory, **values))
+    answers = means(*grid)["synchronized"]
     assert answers.values.ravel().tolist() == [synchronized]
     assert ("not defined" in answers.attrs["comment"]) == (not synchronized)
-    kind = kinds(grid, MOTION)["run_kind"]
+    kind = kinds(*grid, MOTION)["run_kind"]
     assert kind.item() == (MotionKind.SYNCHRONIZED if synchronized else MotionKind.PERIODIC)
 
 
@@ -101,11 +101,11 @@ def points(tmp_path):
         return with_section(trajectory, section, np.tile(np.array([1, -1], np.int8), len(upward)), **averages)
 
     grid = grid_of(tmp_path, ["minus", "plus"], {f"{a:.4f}": a for a in RUNS}, **SHORT)
-    return write_points(grid, alter)
+    return write_points(*grid, alter)
 
 
 def test_kinds_of_motion_of_runs(points):
-    dataset = kinds(points, MOTION)
+    dataset = kinds(*points, MOTION)
     assert (dataset.attrs["synchronization_threshold"], dataset.attrs["longest_period"]) == (1e-6, 2000.0)
     for point in (dataset.sel(law=law, initial=state) for law in dataset["law"].values for state in ("minus", "plus")):
         expected = list(zip(*RUNS.values(), strict=True))
@@ -118,7 +118,7 @@ def test_kinds_of_motion_of_runs(points):
 
 
 def test_section_points_are_kept_run_by_run(points):
-    dataset = bifurcation_diagram.summarize(points)
+    dataset = bifurcation_diagram.summarize(*points)
     # The last run did not complete.
     completed = list(RUNS.values())[:-1]
     counts = [2 * len(upward) for _, upward, *_ in completed]

@@ -1,5 +1,7 @@
 """Summaries over several parameters, compared with scalings of the equations of motion."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,9 +10,7 @@ from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.running.settings import Settings
-from burridge_knopoff.summaries.points import Grid
-from tests.grids import PAPER_MODELS
+from tests.grids import grid_of
 from tests.summaries.points import kinds, write_points
 
 RUN = {"transient": 2000.0, "window": 2000.0, "batches": 4}
@@ -22,9 +22,8 @@ MASSES = {"mass[2]": [0.999999999, 1.0]}
 
 def summary(folder, law, state=PAIR, **parameters):
     named = {name: {f"{value:.9f}": value for value in values} for name, values in parameters.items()}
-    models = {**PAPER_MODELS, "laws": {law: {}}, "chain": {**PAPER_MODELS["chain"], "blocks": state.blocks}}
-    grid = Grid(folder, {state.name: state}, named, {law: Settings(**RUN)}, models)
-    return kinds(write_points(grid)).squeeze(("law", "initial"))
+    study, _ = grid_of(folder, [state], {}, {"laws": {law: {}}}, **RUN)
+    return kinds(*write_points(replace(study, parameters=named), folder)).squeeze(("law", "initial"))
 
 
 def per_velocity(dataset):

@@ -3,15 +3,12 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Settings, simulate
+from burridge_knopoff import simulate
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.figures import solvers as figure
-from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.provenance.bad_file import BadFile
-from burridge_knopoff.summaries.points import Grid
-from burridge_knopoff.summaries.solvers import summarize
-from tests.grids import PAPER_MODELS
-from tests.refused import refused
+from burridge_knopoff.summaries.solvers import compare_solvers
+from tests.grids import grid_of
 
 SOLVERS = {"linearized": ["map", "series", "rk4"], "nonlinear": ["series", "rk4"]}
 A = {"0.0800": 0.08, "0.2000": 0.2}
@@ -29,22 +26,24 @@ def runs():
 
 
 @pytest.fixture
-def files(tmp_path, runs):
+def study(tmp_path, runs):
+    """The keys of a study, and the folder of its results."""
+    part, _ = grid_of(tmp_path, ["plus"], A, **settings("series"))
+    config = {
+        **part.config,
+        "solver": {law: solvers[0] for law, solvers in SOLVERS.items()},
+        "lyapunov_exponents": 3,
+        "a_digits": 4,
+        "solvers": {"a": [*A.values()], "step": 0.01},
+    }
     for (law, solver, name), run in runs.items():
-        is_main = solver == SOLVERS[law][0]
-        folder = tmp_path / "points" if is_main else tmp_path / "solvers" / solver
-        write_point(run, folder / law / "plus" / f"a{name}.nc")
-    main_settings = {law: Settings(**settings(solvers[0])) for law, solvers in SOLVERS.items()}
-    grid = Grid(tmp_path / "points", {"plus": PAPER_STATES["plus"]}, {"a": A}, main_settings, PAPER_MODELS)
-    other_grids = {}
-    for solver in ("series", "rk4"):
-        law_settings = {law: Settings(**settings(solver)) for law, solvers in SOLVERS.items() if solver in solvers[1:]}
-        other_grids[solver] = grid.copy_with(tmp_path / "solvers" / solver, law_settings)
-    return grid, other_grids
+        folder = "points" if solver == SOLVERS[law][0] else f"solvers/{solver}"
+        write_point(run, tmp_path / folder / law / "plus" / f"a{name}.nc")
+    return config, tmp_path
 
 
-def test_the_runs_are_compared(files, runs):
-    dataset = summarize(*files, 0.01)
+def test_the_runs_are_compared(study, runs):
+    dataset = compare_solvers(*study)
     assert dict(dataset.sizes) == {"law": 2, "solver": 3, "initial": 1, "a": 2}
     assert dataset.attrs["solver_linearized"] == "map"
     for (law, solver, name), run in runs.items():
@@ -67,24 +66,24 @@ def test_the_runs_are_compared(files, runs):
     assert 20.0 < dataset["event_order_time"].sel(law="linearized", solver="rk4", initial="plus", a=0.2) < 500.0
 
 
-def test_a_solver_that_does_not_accept_a_law_has_no_numbers(files):
-    none = summarize(*files, 0.01).sel(law="nonlinear", solver="map")
+def test_a_solver_that_does_not_accept_a_law_has_no_numbers(study):
+    none = compare_solvers(*study).sel(law="nonlinear", solver="map")
     for name in ("status", "step_count", "event_order_count"):
         assert (none[name] == -1).all()
     for name in ("mean_distance", "mean_distance_error", "end_time", "difference", "event_order_time"):
         assert np.isnan(none[name]).all()
 
 
-def test_a_file_of_another_solver_is_refused(files):
-    grid, other_grids = files
-    series, rk4 = (other_grids[solver].path("linearized", "plus", "0.0800") for solver in ("series", "rk4"))
+def test_a_file_of_another_solver_is_refused(study):
+    series, rk4 = (study[1] / f"solvers/{solver}/linearized/plus/a0.0800.nc" for solver in ("series", "rk4"))
     series.write_bytes(rk4.read_bytes())
-    with refused("series/linearized/plus/a0.0800.nc", "solver: got rk4", error=BadFile):
-        summarize(grid, other_grids, 0.01)
+    reason = r"series/linearized/plus/a0\.0800\.nc: is another run: solver: got rk4, expected nothing"
+    with pytest.raises(BadFile, match=reason):
+        compare_solvers(*study)
 
 
-def test_the_figure_draws_every_solver(files):
-    dataset = summarize(*files, 0.01)
+def test_the_figure_draws_every_solver(study):
+    dataset = compare_solvers(*study)
     panels = figure.draw(dataset).axes
     curves = [line.get_xdata().tolist() for line in panels[0].get_lines() if len(line.get_xdata()) == 2]
     for solver in SOLVERS["linearized"]:

@@ -130,13 +130,13 @@ SETTINGS = {"transient": 1500.0, "window": 400.0, "batches": 4}
 
 
 def points(folder, initial, a, alter=lambda trajectory: trajectory, **settings):
-    """Write the points of one initial state at one a, altered if asked, and return their grid."""
-    return write_points(grid_of(folder, [initial], {f"{a:.4f}": a}, **{**SETTINGS, **settings}), alter)
+    """Write the points of one initial state at one a, altered if asked, and return their study and its folder."""
+    return write_points(*grid_of(folder, [initial], {f"{a:.4f}": a}, **{**SETTINGS, **settings}), alter)
 
 
 def test_the_synchronized_orbit(tmp_path):
     """Its period and slip time come from Newton's method, without an event list or a window."""
-    dataset = summarize(points(tmp_path, "minus", 0.05), **SETTINGS)
+    dataset = summarize(*points(tmp_path, "minus", 0.05))
     for law in ("linearized", "nonlinear"):
         orbit = synchronized_orbits(Model(Chain(3), law_of(law, 0.0))).at(0.05)
         run = dataset.sel(law=law, initial="minus", a=0.05)
@@ -160,7 +160,7 @@ def test_the_synchronized_orbit(tmp_path):
 def test_events_stored_without_states_count_too(tmp_path):
     """The stops are the same, whichever events are stored with states."""
     kept = [
-        summarize(points(tmp_path / events, "plus", 0.08, events=events, event_window=width), **SETTINGS)
+        summarize(*points(tmp_path / events, "plus", 0.08, events=events, event_window=width))
         for events, width in (("window", 50.0), ("window", 400.0), ("all", 1.0))
     ]
     # Frequencies are more accurate for longer series of velocities; the smallest jump is among more events.
@@ -178,8 +178,8 @@ def test_events_stored_without_states_count_too(tmp_path):
 def test_a_block_that_never_moves_and_one_that_never_stops(tmp_path):
     """The first block is pulled back and sticks; the second slips for half its natural period, π/√2."""
     held = InitialState("held", (3.0, -1.0), (0.0, 0.1))
-    grid = points(tmp_path, held, 0.05, transient=0.5, window=1.0, start="tested", trajectory=1.0)
-    run = summarize(grid, 0.5, 1.0, 2).sel(law="linearized", a=0.05, initial="held")
+    grid = points(tmp_path, held, 0.05, transient=0.5, window=1.0, batches=2, start="tested", trajectory=1.0)
+    run = summarize(*grid).sel(law="linearized", a=0.05, initial="held")
     assert run["stick_fraction"].values.tolist() == [1.0, 0.0]
     assert run["stop_rate"].values.tolist() == [0.0, 0.0]
     assert run["least_velocity"].values[0] == 0.0 < run["least_velocity"].values[1]
@@ -192,7 +192,7 @@ def test_a_run_that_did_not_complete_has_no_values(tmp_path):
     def change(run):
         return dataclasses.replace(run, status="diverged") if run.model.law.name == "linearized" else run
 
-    dataset = summarize(points(tmp_path, "minus", 0.05, change), **SETTINGS)
+    dataset = summarize(*points(tmp_path, "minus", 0.05, change))
     for variable in dataset.data_vars.values():
         assert np.isnan(variable.sel(law="linearized")).all()
         assert np.isfinite(variable.sel(law="nonlinear")).all()

@@ -10,7 +10,7 @@ config = job.config
 agreement = summarize(
     job.summary("runs"),
     job.summary("lyapunov"),
-    compare_events(job.points),
+    compare_events(job.study, job.results),
     *job.summaries("attractors"),
     synchronization_threshold=config["synchronization_threshold"],
     agreement=config["agreement"],

@@ -6,4 +6,4 @@ job = Job(snakemake)
 
 from burridge_knopoff.summaries.bifurcation_diagram import summarize
 
-job.write(summarize(job.points))
+job.write(summarize(job.study, job.results))

@@ -6,7 +6,5 @@ job = Job(snakemake)
 
 from burridge_knopoff.study.chunks import chunks
 from burridge_knopoff.study.points import make_points
-from burridge_knopoff.study.study import Study
 
-study = Study.of_keys(job.config)
-make_points(study, chunks(study)[job.wildcards.chunk], job.results / "points")
+make_points(job.study, chunks(job.study)[job.wildcards.chunk], job.results)

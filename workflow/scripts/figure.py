@@ -7,16 +7,16 @@ job = Job(snakemake)
 import gc
 from importlib import import_module
 
-from burridge_knopoff.study.study import Study
-from burridge_knopoff.summaries.points import Grid, open_point
+from burridge_knopoff.study.study import Study, all_points
+from burridge_knopoff.summaries.points import open_point
 
 # A figure is drawn quickly, and garbage collection would take a tenth of the time.
 gc.disable()
 figure = import_module(f"burridge_knopoff.figures.{job.params.figure}")
 if figure.INPUTS == ("points",):
-    grid = Grid.of_config(job.results / "points", {**job.config, "a": [job.config["figures"]["a"]]})
-    job.write(figure.draw({initial: open_point(grid, law, initial, a) for _, (law, initial, a) in grid}))
+    study = Study.of_keys({**job.config, "a": [job.config["figures"]["a"]]})
+    points = {point["initial"]: point for point in all_points(study)}
+    job.write(figure.draw({initial: open_point(study, job.results, point) for initial, point in points.items()}))
 else:
-    study = Study.of_keys(job.config)
-    properties = {name: getattr(study, name) for name in getattr(figure, "FROM_STUDY", ())}
+    properties = {name: getattr(job.study, name) for name in getattr(figure, "FROM_STUDY", ())}
     job.write(figure.draw(*job.summaries("summaries"), **properties))

@@ -5,14 +5,13 @@ from burridge_knopoff.job import Job
 job = Job(snakemake)
 
 from burridge_knopoff.report.page import Sources, render
-from burridge_knopoff.study.study import Study
 
-study = Study.of_keys(job.config)
+study = job.study
 sources = Sources(
     claims=next(iter(job.paths("claims")), None),
     summaries={path.stem: path for path in job.paths("summaries")},
     figures={path.stem: path for path in job.paths("figures")},
     benchmarks=job.results / "benchmarks",
-    points=None if study.is_plane else job.results / "points",
+    results=None if study.is_plane else job.results,
 )
 job.write(render(study, sources, job.params.arguments))

@@ -6,4 +6,4 @@ job = Job(snakemake)
 
 from burridge_knopoff.summaries.runs import summarize
 
-job.write(summarize(job.points, **job.config["motion"]))
+job.write(summarize(job.study, job.results, **job.config["motion"]))

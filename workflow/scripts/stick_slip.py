@@ -6,5 +6,4 @@ job = Job(snakemake)
 
 from burridge_knopoff.summaries.stick_slip import summarize
 
-config = job.config
-job.write(summarize(job.points, config["transient"], config["window"], config["batches"]))
+job.write(summarize(job.study, job.results))

@@ -166,7 +166,7 @@ def _runs(results: Path, study: Study) -> dict[str, Path]:
     logs = {name: results / log for name, log in run_logs(study).items()}
     for chunk, points in chunks(study).items():
         for point in points:
-            name = f"points/{study.point_file.format(**point)}"
+            name = study.run_file(**point)
             if not logs[name].exists():
                 logs[name] = results / f"logs/chunk/{chunk}.log"
     return logs

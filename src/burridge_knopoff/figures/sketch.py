@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -21,7 +19,7 @@ PAPER = "Fig. 1"
 CONDITION = "has_one_chain"
 INPUTS = ()
 OVER = "any"
-FROM_STUDY = ("chain_description",)
+FROM_STUDY = ("chain",)
 CAPTION = """\
 The chain of the study. Springs couple neighbouring blocks, and others connect blocks to a driver that moves with
 velocity v; the number next to a spring is its stiffness in units of the spring constant k. U_i is the position of block
@@ -37,9 +35,8 @@ SIDE, TOP, STEP = 0.8, 2.3, 2.2
 
 
 @styled
-def draw(chain_description: Mapping[str, Any]) -> Figure:
+def draw(chain: Chain) -> Figure:
     """Draw a chain given as arguments of `Chain`: blocks, springs with their strengths, driver and ground."""
-    chain = Chain(**chain_description)
     count = chain.blocks
     blocks = list(range(count)) if count <= WHOLE else [0, 1, count - 1]
     # Leave room for dots in place of the missing blocks.

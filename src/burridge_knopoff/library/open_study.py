@@ -61,9 +61,7 @@ class StudyResults(Mapping[str, xarray.DataTree]):
     def __init__(self, results: Path) -> None:
         self._record, self._study = recorded_study(results)
         self._results = results
-        self._points = {
-            f"points/{self._study.point_file.format(**run)}".removesuffix(".nc"): run for run in all_points(self._study)
-        }
+        self._points = {self._study.run_file(**run).removesuffix(".nc"): run for run in all_points(self._study)}
         files = (name.removesuffix(".nc") for name in self._record["files"] if name.endswith(".nc"))
         self._summaries = sorted(name for name in files if name.startswith("summary/"))
         self.config = dict(self._study.config)

@@ -18,11 +18,10 @@ from burridge_knopoff.library.keyword_settings import settings_of, show_settings
 from burridge_knopoff.messages import format_value, full_key, refusal
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
+from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.parameters import (
     format_parameter_names,
-    parameter_names,
-    parameter_value,
     parse_indexed_name,
     plain_name,
     remarks_on_states,
@@ -41,7 +40,7 @@ if TYPE_CHECKING:
 _T = TypeVar("_T")
 
 #: Dimensions of the same size in every run, and the variables of a point over no others.
-_COMMON_DIMENSIONS = {"batch", "exponent", "level"}
+_COMMON_DIMENSIONS = {"batch", "block", "exponent", "level"}
 _COMMON = {name: item for name, item in POINT_VARIABLES.items() if set(item.dimensions) <= _COMMON_DIMENSIONS}
 
 
@@ -68,10 +67,11 @@ def sweep(
 
     Each parameter given as a sequence is a dimension of the Dataset: first a, then the others in the order given; that
     of `mass[3]` is `mass_3`. The variables are those of a point file (docs/data.md) with one value per run, batch,
-    exponent or level of J, among them `mean_distance`, `mean_distance_error`, `lyapunov_exponent` and `status`, which
-    is 0 for a completed run. The states `minus` and `plus` follow v; other numbers are the same at every point, and so
-    are those of every state if springs, masses or thresholds vary: the attribute `remark` then says so. Raises
-    ValueError, one line, for a wrong argument; an error at one point names it.
+    block, exponent or level of J, among them `mean_distance`, `mean_distance_error`, `lyapunov_exponent` and `status`,
+    which is 0 for a completed run. The series of a run are left out, since `simulate` returns them: the variables over
+    `sample`, `earlier_event`, `event`, `crossing` and `trajectory_time`. The states `minus` and `plus` follow v; other
+    numbers are the same at every point, and so are those of every state if springs, masses or thresholds vary: the
+    attribute `remark` then says so. Raises ValueError, one line, for a wrong argument; an error at one point names it.
 
     >>> from burridge_knopoff import sweep
     >>> runs = sweep("nonlinear", [0.02, 0.05, 0.3], transient=1000, window=500, batches=2)
@@ -86,30 +86,55 @@ def sweep(
     state = given_state(initial)
     names = fields_of(Settings)
     chosen = settings_of(Settings, settings, {name: value for name, value in by_name.items() if name in names})
-    if cores is not None:
-        cores = Whole(1, 1024).form(cores, "cores")
+    cores = available_cores() if cores is None else Whole(1, 1024).form(cores, "cores")
     parameters = {
         name: value for name, value in (("a", a), *by_name.items()) if name not in names and value is not None
     }
     base, axes = _grid(law, parameters, state.blocks, chain, contact)
     points = [dict(zip(axes, values, strict=True)) for values in product(*axes.values())]
+    models = _checked_models(base, points, state, chosen)
+    warn_of_cost(max(models, key=lambda model: model.chain.highest_rate), state, chosen)
+    size = min(LOCKSTEP_RUNS, -(-len(points) // cores))
+
+    def run_from(first: int) -> list[tuple[dict[str, Any], dict[str, Any]]]:
+        return _run_together(points[first : first + size], models[first : first + size], state, chosen)
+
+    runs = map_in_threads(cores, run_from, range(0, len(points), size))
+    dataset = _dataset(axes, [*chained.from_iterable(runs)])
+    if remark := "; ".join(remarks_on_states([state], axes)):
+        dataset.attrs["remark"] = remark
+    return dataset
+
+
+def _checked_models(
+    base: Model, points: Sequence[Mapping[str, float]], state: InitialState, settings: Settings
+) -> list[Model]:
+    """Return the model at each point; raises ValueError if a run cannot begin there."""
     models = [_call_at(point, base.at, **point) for point in points]
     for point, model in zip(points, models, strict=True):
-        chosen.check_chain(model.chain)
-        _call_at(point if len(axes) > 1 else {}, model.begin, state, chosen.start)
-    warn_of_cost(max(models, key=lambda model: model.chain.highest_rate), state, chosen)
+        settings.check_chain(model.chain)
+        _call_at(point if len(point) > 1 else {}, model.begin, state, settings.start)
+    return models
 
-    def some(first: int) -> list[tuple[dict[str, Any], dict[str, Any]]]:
-        part = range(first, min(first + size, len(points)))
-        jobs = [_call_at(points[k], prepare, models[k], state, chosen) for k in part]
-        how = run_together([job.runner for job in jobs])
-        statuses = [_call_at(points[k], job.runner.status_of, end) for k, job, end in zip(part, jobs, how, strict=True)]
-        runs = [job.result(status) for job, status in zip(jobs, statuses, strict=True)]
-        return [(_common_values(point_values(run)), point_attributes(run)) for run in runs]
 
-    cores = cores or available_cores()
-    size = min(LOCKSTEP_RUNS, -(-len(points) // cores))
-    results = list(chained.from_iterable(map_in_threads(cores, some, range(0, len(points), size))))
+def _run_together(
+    points: Sequence[Mapping[str, float]], models: Sequence[Model], state: InitialState, settings: Settings
+) -> list[tuple[dict[str, Any], dict[str, Any]]]:
+    """Return the common variables and the attributes of the runs at some points."""
+    jobs = [_call_at(point, prepare, model, state, settings) for point, model in zip(points, models, strict=True)]
+    ends = run_together([job.runner for job in jobs])
+    runs = []
+    for point, job, end in zip(points, jobs, ends, strict=True):
+        run = job.result(_call_at(point, job.runner.status_of, end))
+        values = point_values(run)
+        runs.append(({name: values[name] for name in _COMMON}, point_attributes(run)))
+    return runs
+
+
+def _dataset(
+    axes: Mapping[str, list[float]], runs: Sequence[tuple[Mapping[str, Any], Mapping[str, Any]]]
+) -> xarray.Dataset:
+    """Return the runs as a Dataset over the axes, with the attributes that are the same for all of them."""
     import xarray
 
     shape = [len(values) for values in axes.values()]
@@ -117,23 +142,17 @@ def sweep(
     data: dict[str, Any] = {}
     for name, item in _COMMON.items():
         if item.coordinate:
-            data[name] = item.dimensions, np.asarray(results[0][0][name], item.dtype), item.all_attributes()
+            data[name] = item.dimensions, np.asarray(runs[0][0][name], item.dtype), item.all_attributes()
         else:
-            array = np.array([numbers[name] for numbers, _ in results], item.dtype)
+            array = np.array([values[name] for values, _ in runs], item.dtype)
             dimensions = *plain.values(), *item.dimensions
             data[name] = dimensions, array.reshape((*shape, *array.shape[1:])), item.all_attributes()
     for name, values in axes.items():
         item = _COMMON.get(name, Variable((), "f8", f"parameter {name} of the model"))
         data[plain[name]] = plain[name], values, item.all_attributes()
-    first, *other_attributes = (attributes for _, attributes in results)
-    common = {key: value for key, value in first.items() if all(other.get(key) == value for other in other_attributes)}
-    if remark := "; ".join(remarks_on_states([state], axes)):
-        common["remark"] = remark
+    first, *others = (attributes for _, attributes in runs)
+    common = {key: value for key, value in first.items() if all(other.get(key) == value for other in others)}
     return xarray.Dataset(data, attrs=common).set_coords({name for name, item in _COMMON.items() if item.coordinate})
-
-
-def _common_values(values: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: values[name] for name in _COMMON}
 
 
 def _grid(
@@ -155,12 +174,12 @@ def _grid(
         first = axes["a"][0] if "a" in axes else single.get("a", law.a if isinstance(law, Law) else None)
         base = given_model(law, first, blocks, chain, None, contact)
     for name in parameters:
-        if name not in parameter_names(base) and parse_indexed_name(name) is None:
-            names = " | ".join([format_parameter_names(base), *sorted(fields_of(Settings))])
+        if name not in base.parameter_names and parse_indexed_name(name) is None:
+            names = " | ".join([format_parameter_names(base.parameter_names), *sorted(fields_of(Settings))])
             raise ValueError(f"{full_key('', name)}: not a setting or a parameter, expected {names}")
     base = base.at(**single)
     for name, values in axes.items():
-        axes[name] = [parameter_value(base.at(**{name: value}), name) for value in values]
+        axes[name] = [base.at(**{name: value}).parameter(name) for value in values]
         value, count = Counter(axes[name]).most_common(1)[0]
         if count > 1:
             raise ValueError(f"{name}: got {format_value(value)} twice, expected each value once")

@@ -16,7 +16,7 @@ from burridge_knopoff.model.laplacian import Laplacian
 from burridge_knopoff.model.own_units import OwnUnits, own_units_of
 from burridge_knopoff.model.random_numbers import Numbers, RandomNumbers, block_values
 from burridge_knopoff.model.ranges import Either, Number, OneOf, Several, Whole
-from burridge_knopoff.model.solving import static_displacement
+from burridge_knopoff.model.solving import ELIMINATION_LIMIT, nearest_solution, solve_ring, solve_tridiagonal
 from burridge_knopoff.model.springs import (
     DAMPING,
     MAXIMUM_BLOCKS,
@@ -371,7 +371,17 @@ class Chain(Unchanging):
     @cached_property
     def own_units(self) -> OwnUnits:
         """The units in which this chain is about as fast, as long and as strong as the paper's."""
-        return own_units_of(self)
+        return own_units_of(self.thresholds, self.masses, self._displacement)
+
+    @property
+    def a_unit(self) -> float:
+        """The a at which friction changes a slip as much as a = 1 does in the paper's chain, for which it is 1.
+
+        Springs that are stiffer by a factor make all motion faster by its square root; a mode grows at a rate
+        proportional to a times the threshold.
+        """
+        pulled = self.driving > 0.0
+        return math.sqrt(float((self.driving * self.masses)[pulled].min())) / float(self.thresholds.max())
 
     @property
     def damping_limit(self) -> float:
@@ -411,4 +421,10 @@ class Chain(Unchanging):
 
     @cached_property
     def _displacement(self) -> np.ndarray:
-        return read_only_copy(static_displacement(self))
+        """x with K x = threshold, shape (blocks,)."""
+        if self.is_network or self.blocks > ELIMINATION_LIMIT:
+            return read_only_copy(nearest_solution(self.sparse_stiffness, self.thresholds))
+        solve = solve_ring if self.ends == "ring" else solve_tridiagonal
+        x = solve(self.diagonal, self.coupling_to_next, self.thresholds.copy())
+        # The solution is made mirror-symmetric to the bit if the chain is.
+        return read_only_copy(0.5 * (x + x[::-1]) if self.is_mirror_symmetric else x)

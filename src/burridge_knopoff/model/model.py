@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Annotated, Any
 
@@ -10,13 +10,20 @@ import numpy as np
 
 from burridge_knopoff.laws import Law
 from burridge_knopoff.laws.law import MAX_SPEED
-from burridge_knopoff.messages import format_value, refusal
-from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.messages import format_value, full_key, refusal
+from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.initial import PAPER_V, InitialState, PaperState
-from burridge_knopoff.model.parameters import set_parameters
+from burridge_knopoff.model.parameters import (
+    CHAIN_PARAMETERS,
+    chain_parameter,
+    format_parameter_names,
+    parameter_key,
+    parse_indexed_name,
+    set_chain_parameters,
+)
 from burridge_knopoff.model.ranges import Number, OneOf, Text
-from burridge_knopoff.values import Unchanging, instance_of, read_only_copy, real_array
+from burridge_knopoff.values import Unchanging, instance_of, read_only_copy, real_array, real_number
 
 LAW_NAME = Text("small letters, digits and _, at most 32, a letter first", "[a-z][a-z0-9_]{0,31}")
 
@@ -28,6 +35,8 @@ STARTS = ("moving", "tested")
 START = (
     "moving: every block slips at tau = 0 | tested: blocks on which the force is at most the threshold stick at tau = 0"
 )
+
+_ONE_NUMBER = "one number for the whole chain"
 
 
 @settings
@@ -83,12 +92,58 @@ class Model(Unchanging):
         """Friction parameter of the law."""
         return self.law.a
 
+    @property
+    def parameter_names(self) -> tuple[str, ...]:
+        """Names of the parameters of the law, the driver and the whole chain."""
+        return ("a", *self.law.parameters, "v", *CHAIN_PARAMETERS)
+
+    def parameter(self, name: str) -> float:
+        """Return the value of a parameter.
+
+        Raises ValueError, one line, if the model has no parameter of this name, or several values for it.
+        """
+        value = self._stored_parameter(name)
+        number = real_number(value)
+        if number != number:
+            raise refusal(name, value, _ONE_NUMBER)
+        return number
+
+    def _stored_parameter(self, name: str) -> Any:
+        """Return a parameter as the model stores it: a number, several numbers or a word."""
+        names = self.parameter_names
+        if not parse_indexed_name(name) and name not in names:
+            expected = format_parameter_names(names)
+            raise ValueError(f"{full_key('', name)}: not a parameter of this model, expected {expected}")
+        if names.count(name) > 1:
+            raise ValueError(
+                f"{name}: got a parameter of both the law {self.law.name} and the model, expected only one"
+            )
+        if parameter_key(name) in CHAIN_PARAMETERS:
+            return chain_parameter(self.chain, name)
+        return {"a": self.a, "v": self.v, **self.law.parameters}[name]
+
     def at(self, a: float | None = None, /, **parameters: float) -> Model:
         """Return the same model at another a, or at other values of any parameters, such as `at(v=0.2, coupling=1.5)`.
 
-        Raises ValueError, one line, as `parameters.set_parameters` does.
+        `pulling` may be a number in place of `neighbours`. A value for one spring or block, `at(**{"mass[3]": 1.2})`,
+        takes precedence over a value for all of them. Raises ValueError, one line, for a name that is not a parameter
+        of the model, a value out of range, and a parameter of the whole chain that has several values.
         """
-        return set_parameters(self, parameters if a is None else {"a": a, **parameters})
+        of_driver: dict[str, Any] = {}
+        of_chain: dict[str, Any] = {}
+        of_law: dict[str, Any] = {}
+        for name, value in (parameters if a is None else {"a": a, **parameters}).items():
+            stored = self._stored_parameter(name)
+            if not isinstance(stored, float) and stored != NEIGHBOURS:
+                raise refusal(name, stored, _ONE_NUMBER)
+            if real_number(value) != real_number(value):
+                raise refusal(name, value, "a number")
+            part = of_driver if name == "v" else of_chain if parameter_key(name) in CHAIN_PARAMETERS else of_law
+            part[name] = value
+        # What does not change keeps its cached properties.
+        law = self.law.at(of_law.pop("a", None), **of_law) if of_law else self.law
+        chain = set_chain_parameters(self.chain, of_chain) if of_chain else self.chain
+        return replace(self, chain=chain, law=law, **of_driver)
 
     def check_same(self, other: Model, key: str) -> None:
         """Check that another model is the same, whatever the form in which its chain is given.

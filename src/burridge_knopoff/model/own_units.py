@@ -7,12 +7,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from burridge_knopoff.model.chain import Chain
 
 # With these factors the unit is 1 for a range of chains around the paper's, whose ends lie between round numbers.
 _TIME_FACTOR = math.sqrt(1.5)
@@ -55,29 +51,20 @@ class OwnUnits:
         return np.repeat([self.length, self.velocity], blocks)
 
 
-def own_units_of(chain: Chain) -> OwnUnits:
+def own_units_of(threshold: np.ndarray, mass: np.ndarray, displacement: np.ndarray) -> OwnUnits:
     """Return the units of a chain, from its displacement by static friction and the acceleration when it is released.
 
     These are the length and the time of the slowest motion, however stiff the springs between blocks are.
+
+    threshold, mass, displacement : of all blocks, shape (blocks,)
     """
-    threshold, mass = chain.thresholds, chain.masses
-    displacement = float(threshold @ np.abs(chain.sliding_offset(1.0))) / float(threshold.sum())
+    length = float(threshold @ np.abs(displacement)) / float(threshold.sum())
     acceleration = float(threshold.sum()) / float(mass.sum())
-    time = math.ldexp(1.0, math.frexp(_TIME_FACTOR * displacement / acceleration)[1] // 2)
-    length = time * time * _nearest_power_of_two(acceleration)
-    return OwnUnits(time, length, _nearest_power_of_two(float(threshold.mean())))
+    time = math.ldexp(1.0, math.frexp(_TIME_FACTOR * length / acceleration)[1] // 2)
+    unit = time * time * _nearest_power_of_two(acceleration)
+    return OwnUnits(time, unit, _nearest_power_of_two(float(threshold.mean())))
 
 
 def _nearest_power_of_two(size: float) -> float:
     """Return the power of 2 nearest to a number on a logarithmic scale."""
     return math.ldexp(1.0, math.frexp(_SIZE_FACTOR * size)[1] - 1)
-
-
-def a_unit(chain: Chain) -> float:
-    """Return the a at which friction changes a slip as much as a = 1 does in the paper's chain, for which it is 1.
-
-    Springs that are stiffer by a factor make all motion faster by its square root; a mode grows at a rate proportional
-    to a times the threshold.
-    """
-    pulled = chain.driving > 0.0
-    return math.sqrt(float((chain.driving * chain.masses)[pulled].min())) / float(chain.thresholds.max())

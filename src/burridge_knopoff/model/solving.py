@@ -9,8 +9,6 @@ import numpy as np
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
-    from burridge_knopoff.model.chain import Chain
-
 #: Rows and rings of up to this many blocks are solved by elimination.
 ELIMINATION_LIMIT = 1024
 #: Maximum number of corrections of a solution; each one adds several digits.
@@ -18,28 +16,6 @@ _CORRECTIONS = 20
 #: Relative error at which a solution is correct to twice the precision of a double.
 _TOLERANCE = 1e-31
 _SPLITTER = 2.0**27 + 1.0
-
-
-def static_displacement(chain: Chain) -> np.ndarray:
-    """Return x with K x = threshold, shape (blocks,), as symmetric to the bit as the chain."""
-    if chain.is_network or chain.blocks > ELIMINATION_LIMIT:
-        return nearest_solution(chain.sparse_stiffness, chain.thresholds)
-    solve = solve_ring if chain.ends == "ring" else solve_tridiagonal
-    x = solve(chain.diagonal, chain.coupling_to_next, chain.thresholds.copy())
-    if chain.ends == "ring":
-        # The solution is made periodic to the bit, as the ring is, so that a periodic state stays periodic.
-        period = _period(chain)
-        x = np.tile(x[:period], chain.blocks // period)
-    if chain.is_mirror_symmetric:
-        # The solution is made mirror-symmetric to the bit, as the chain is.
-        x = 0.5 * (x + x[::-1])
-    return x
-
-
-def _period(ring: Chain) -> int:
-    """Return the smallest shift along a ring that leaves springs and thresholds unchanged, in blocks."""
-    values = np.array([ring.coupling_to_previous, ring.driving, ring.thresholds])
-    return next(shift for shift in range(1, ring.blocks + 1) if np.array_equal(values, np.roll(values, shift, axis=1)))
 
 
 def solve_tridiagonal(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarray) -> np.ndarray:
@@ -60,7 +36,11 @@ def solve_tridiagonal(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarr
 
 
 def solve_ring(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarray) -> np.ndarray:
-    """Solve the system of a ring, which is tridiagonal except for its corners, of strength strength[-1]."""
+    """Solve the system of a ring, which is tridiagonal except for its corners, of strength strength[-1].
+
+    The solution is periodic to the bit if the ring is, so that a periodic state stays periodic.
+    """
+    period = _period(np.array([diagonal, strength, load]))
     # The corners are a rank-one update: the Sherman-Morrison formula.
     pivot, corner = diagonal.copy(), np.zeros(len(load))
     for end in (0, -1):
@@ -68,7 +48,14 @@ def solve_ring(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarray) -> 
         corner[end] += 1.0
     load = solve_tridiagonal(pivot, strength, load)
     other = solve_tridiagonal(pivot, strength, corner)
-    return load + strength[-1] * other * (load[0] + load[-1]) / (1.0 - strength[-1] * (other[0] + other[-1]))
+    x = load + strength[-1] * other * (load[0] + load[-1]) / (1.0 - strength[-1] * (other[0] + other[-1]))
+    return np.tile(x[:period], len(x) // period)
+
+
+def _period(values: np.ndarray) -> int:
+    """Return the smallest shift along a ring that leaves the values of its blocks, shape (n, blocks), unchanged."""
+    blocks = values.shape[1]
+    return next(shift for shift in range(1, blocks + 1) if np.array_equal(values, np.roll(values, shift, axis=1)))
 
 
 def nearest_solution(matrix: csr_array, load: np.ndarray) -> np.ndarray:

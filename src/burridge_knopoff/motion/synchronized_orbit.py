@@ -11,7 +11,6 @@ from itertools import pairwise
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.model.own_units import a_unit
 from burridge_knopoff.motion.limit_cycle import orbit_of_motion
 from burridge_knopoff.motion.section_returns import state_of
 from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at
@@ -61,7 +60,7 @@ def synchronized_orbits(model: Model) -> KnownOrbits:
     """
     if not model.chain.is_mirror_symmetric:
         raise OrbitError("chain: got a chain that is not its own mirror image, expected one that is")
-    seeds = [a_unit(model.chain) * a for a in SEEDS]
+    seeds = [model.chain.a_unit * a for a in SEEDS]
     for find in (_single_cycle_orbit, _settled_orbit):
         for a in seeds:
             try:

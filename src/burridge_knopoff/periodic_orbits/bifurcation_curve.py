@@ -17,7 +17,6 @@ import numpy as np
 
 from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.model import ChainState
-from burridge_knopoff.model.parameters import parameter_value
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcation_plane import BifurcationPlane, CurvePoint
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation
@@ -113,7 +112,7 @@ def follow_bifurcation(
         first = plane.point(orbit, np.array([1.0, 0.0]), *start)
     ways = [list(_follow_one_way(plane, first, side, settings, ends)) for side in (-1.0, 1.0)]
     points = [*ways[0][::-1], first, *ways[1]]
-    values = np.array([[parameter_value(point.orbit.model, name) for name in names] for point in points])
+    values = np.array([[point.orbit.model.parameter(name) for name in names] for point in points])
     errors = np.array([point.errors for point in points])
     return BifurcationCurve(bifurcation.kind, names, values, errors, [point.orbit for point in points])
 
@@ -129,7 +128,7 @@ def _follow_one_way(
     direction, length = np.array([0.0, side]), settings.first_step
     before, point, count = None, first, 1
     while count < settings.max_orbits and length >= settings.smallest_step:
-        if not interval[0] <= parameter_value(point.orbit.model, plane.names[1]) <= interval[1]:
+        if not interval[0] <= point.orbit.model.parameter(plane.names[1]) <= interval[1]:
             return
         try:
             following = _step(plane, before, point, direction, length)

@@ -13,7 +13,6 @@ import numpy as np
 
 from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.model.parameters import parameter_value
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import BRACKETS, ROUNDING, Bifurcation, kind_at
 from burridge_knopoff.periodic_orbits.border_collision import CORNER_DISTANCE, LARGEST_SHARE, STEP_REDUCTION
@@ -78,14 +77,14 @@ class BifurcationPlane:
 
     def place(self, model: Model) -> np.ndarray:
         """Return the point of a model in the plane."""
-        return np.array([parameter_value(model, name) for name in self.names]) / self.units
+        return np.array([model.parameter(name) for name in self.names]) / self.units
 
     def line(self, model: Model, direction: np.ndarray) -> ParameterLine:
         """Return the line through a model perpendicular to a direction of the plane."""
         rates = np.array([direction[1], -direction[0]]) * self.units
         order = (0, 1) if abs(direction[1]) >= abs(direction[0]) else (1, 0)
         names = tuple(self.names[k] for k in order)
-        origins = tuple(parameter_value(model, name) for name in names)
+        origins = tuple(model.parameter(name) for name in names)
         return ParameterLine(names, origins, tuple(float(rates[k]) for k in order), units=self.own_units)
 
     def point(

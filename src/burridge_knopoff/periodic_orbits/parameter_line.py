@@ -8,14 +8,13 @@ from dataclasses import dataclass
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.own_units import OwnUnits
-from burridge_knopoff.model.parameters import parameter_value, set_parameters
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 
 
 def model_at(model: Model, names: Sequence[str], values: Iterable[float]) -> Model:
     """Return a model at other values of some parameters; raises OrbitError if there is no such model."""
     try:
-        return set_parameters(model, dict(zip(names, map(float, values), strict=True)))
+        return model.at(**dict(zip(names, map(float, values), strict=True)))
     except ValueError as error:
         raise OrbitError(str(error)) from None
 
@@ -42,7 +41,7 @@ class ParameterLine:
 
     def value(self, model: Model) -> float:
         """Return the value of the parameter that determines the coordinate."""
-        return parameter_value(model, self.names[0])
+        return model.parameter(self.names[0])
 
     def coordinate(self, model: Model) -> float:
         """Return the coordinate of a model."""
@@ -55,7 +54,7 @@ class ParameterLine:
 
     def place(self, model: Model) -> str:
         """Return the values of the parameters of a model as text for a message."""
-        return ", ".join(f"{name} = {parameter_value(model, name)!r}" for name in self.names)
+        return ", ".join(f"{name} = {model.parameter(name)!r}" for name in self.names)
 
 
 def line_along_a(chain: Chain) -> ParameterLine:

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.model.parameters import parameter_scale, parameter_value, set_parameters
+from burridge_knopoff.model.parameters import CHAIN_PARAMETERS, parameter_key
 from burridge_knopoff.periodic_orbits.floquet import Multipliers, multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, rate
 from burridge_knopoff.periodic_orbits.grazing_distances import GrazingDistances, grazing_distances
@@ -107,16 +107,16 @@ def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
 
     Raises ValueError, one line, if the model has no parameter of this name with a single value.
     """
-    value = parameter_value(orbit.model, parameter)
+    value = orbit.model.parameter(parameter)
     if parameter == "a":
         return line_along_a(orbit.model.chain)
     units = orbit.model.chain.own_units
     state_scale = units.state(orbit.model.blocks)
-    scale, change = parameter_scale(orbit.model, parameter), 0.0
+    scale, change = _natural_size(orbit.model, parameter), 0.0
     size = abs(value) if abs(value) > SMALL * scale else scale
     for step in (PART * size, -PART * size):
         try:
-            model = set_parameters(orbit.model, {parameter: value + step})
+            model = orbit.model.at(**{parameter: value + step})
             larger = model.v / orbit.model.v
             start = ChainState(
                 larger * orbit.reference.position, larger * orbit.reference.velocity, orbit.reference.stuck
@@ -128,6 +128,23 @@ def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
         change = max(change, float(np.abs(difference * units.velocity / state_scale).max() / abs(step)))
     longest = max(LONGEST * abs(value), scale)
     return ParameterLine((parameter,), (value,), (min(longest, CHANGE / max(change, 1e-300)),), units=units)
+
+
+def _natural_size(model: Model, parameter: str) -> float:
+    """Return the natural size of a parameter, whatever its value, which may be 0.
+
+    It is the chain's own unit for a parameter of the chain, 1 for one of the law, and 0 for v, whose size is its value.
+    """
+    units, key = model.chain.own_units, parameter_key(parameter)
+    if parameter in model.law.parameters:
+        return 1.0
+    if key == "threshold":
+        return units.force
+    if key == "mass":
+        return units.force / units.acceleration
+    if key in CHAIN_PARAMETERS:
+        return units.force / (units.velocity if key in ("damping", "pulling_damping") else units.length)
+    return 0.0
 
 
 def weights(model: Model, line: ParameterLine) -> np.ndarray:

@@ -13,7 +13,6 @@ import numpy as np
 from scipy.optimize import brentq
 
 from burridge_knopoff.model.model import ChainState
-from burridge_knopoff.model.own_units import a_unit
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bifurcations
 from burridge_knopoff.periodic_orbits.critical_values import critical_values
@@ -26,8 +25,8 @@ from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.return_map import symmetry_breaking_directions
 from burridge_knopoff.running.runner import Runner
 
-#: Range of a, in units of `a_unit`, in which bifurcations are searched for, and steps in a. They do not depend on the
-#: grid of a study. Where a branch ends, the search resumes RESTART_GAP beyond.
+#: Range of a, in units of `Chain.a_unit`, in which bifurcations are searched for, and steps in a. They do not depend on
+#: the grid of a study. Where a branch ends, the search resumes RESTART_GAP beyond.
 RANGE = (0.0125, 0.3)
 FIRST_STEP = 1e-3
 LARGEST_STEP = 5e-3
@@ -46,7 +45,7 @@ CRITICAL = 1e-5
 # the quotient and the remaining error of order d⁴ are both about 1e-12.
 DIFFERENCE = 1e-3
 
-# Step in a, in units of `a_unit`, for the slope of the multiplier.
+# Step in a, in units of `Chain.a_unit`, for the slope of the multiplier.
 SLOPE_STEP = 1e-4
 
 
@@ -57,7 +56,7 @@ def bifurcations_of(orbits: KnownOrbits) -> list[Bifurcation]:
 
 def _each_bifurcation(orbits: KnownOrbits) -> Iterator[Bifurcation]:
     """Yield the bifurcations along the orbits; beyond the end of a branch, continue both ways from the next orbit."""
-    size = a_unit(orbits.model.chain)
+    size = orbits.model.chain.a_unit
     (first, high), gap = (size * end for end in RANGE), size * RESTART_GAP
     # `follow` measures its steps in the chain's own unit.
     share = size / orbits.model.chain.own_units.slope
@@ -180,7 +179,7 @@ def finite_difference_multiplier(orbit: PeriodicOrbit) -> complex:
 
 def critical_a_error(orbits: KnownOrbits, a: float) -> float:
     """Return the change of a_c if finite differences replace the tangent map; NaN if a nearby orbit is not found."""
-    orbit, step = orbits.at(a), SLOPE_STEP * a_unit(orbits.model.chain)
+    orbit, step = orbits.at(a), SLOPE_STEP * orbits.model.chain.a_unit
     try:
         low, high = (abs(multipliers(orbits.at(a + side * step)).transverse) for side in (-1, 1))
     except OrbitError:

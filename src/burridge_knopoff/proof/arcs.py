@@ -49,6 +49,9 @@ class Flow(Protocol):
 
     box_radii: ClassVar[tuple[float, ...]]
 
+    def friction(self, speed: Any, a: Any) -> Any:
+        """Return Φ at a speed in units of v; a : in units of 1/v."""
+
     def weakening(self, rate: Any, a: Any) -> Any:
         """Return w, the decrease of friction below its value at the driver velocity, in units of v."""
 

@@ -17,6 +17,10 @@ class Linearized:
 
     box_radii: ClassVar[tuple[float, ...]] = tuple(2.0**-k for k in range(8, 30))
 
+    def friction(self, speed: Any, a: Any) -> Any:
+        """Return Φ at a speed in units of v; a : in units of 1/v."""
+        return 1 - a * speed
+
     def weakening(self, rate: Any, a: Any) -> Any:
         """Return w, the decrease of friction below its value at the driver velocity, in units of v."""
         return a * rate

@@ -176,6 +176,12 @@ class ProvedOrbit:
         """Return a ball that contains U'/v of all slipping blocks at all times."""
         return self._margin_range(True)
 
+    def friction_range(self, v: float) -> arb:
+        """Return a ball that contains the friction Φ on all slipping blocks at all times."""
+        speed = self.speed_range()
+        with arithmetic():
+            return self.arcs[0].flow.friction(speed, self.a * v)
+
     def force_margin_range(self) -> arb:
         """Return a ball that contains (1 − s)/v of all stuck blocks at all times, with spring force s."""
         return self._margin_range(False)

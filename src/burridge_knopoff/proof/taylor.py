@@ -42,6 +42,10 @@ class Nonlinear:
 
     v: arb
 
+    def friction(self, speed: Any, a: Any) -> Any:
+        """Return Φ at a speed in units of v; a : in units of 1/v."""
+        return 1 / (1 + a * speed)
+
     def weakening(self, rate: Any, a: Any) -> Any:
         """Return w, the decrease of friction below its value at the driver velocity, in units of v."""
         b = a * self.v

@@ -28,7 +28,6 @@ from burridge_knopoff.study.formatting import text
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.agreement import digest
 from burridge_knopoff.summaries.bifurcation_diagram import NEVER_UPWARD
-from burridge_knopoff.summaries.points import Grid
 
 FOLDER = Path(__file__).parent
 
@@ -57,14 +56,14 @@ class Sources:
     claims : the verdicts, None if the study has none
     summaries, figures : {name: path} of netCDF files and of PNG pictures
     benchmarks : folder of Snakemake's benchmark files, which need not exist
-    points : folder of the point files, None for a page without moving blocks
+    results : folder of the study, None for a page without moving blocks
     """
 
     claims: Path | None
     summaries: Mapping[str, Path]
     figures: Mapping[str, Path]
     benchmarks: Path = field(default=Path("benchmarks"))
-    points: Path | None = None
+    results: Path | None = None
 
 
 def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str:
@@ -90,8 +89,7 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
     if study.is_plane:
         parts = _content_over_parameters(drawn)
     else:
-        grid = sources.points and Grid.from_points(sources.points, study.points)
-        trajectories = embedded_trajectories(grid) if grid else None
+        trajectories = embedded_trajectories(study, sources.results) if sources.results else None
         parts = _content_over_a(study, summaries, drawn, arguments, verdicts, trajectories)
     return environment.get_template("report.html.jinja").render(
         study=study.name,

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import base64
 import zlib
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.summaries.points import Grid, read_point
+from burridge_knopoff.study.study import Study, all_points
+from burridge_knopoff.summaries.points import read_point
 
 #: A run has at most so many frames: each EVERY-th sample from the end of its stored trajectory.
 FRAMES, EVERY = 300, 2
@@ -20,7 +22,7 @@ LARGEST = 600_000
 STEPS = 126
 
 
-def embedded_trajectories(grid: Grid) -> dict[str, Any] | None:
+def embedded_trajectories(study: Study, results: Path) -> dict[str, Any] | None:
     """Return the last trajectory of each run for the page; None for a ring or a network, which are no line of blocks.
 
     `packed` is the base64 of compressed bytes, (run, block, frame) with the runs in the order law, initial state, a:
@@ -29,27 +31,28 @@ def embedded_trajectories(grid: Grid) -> dict[str, Any] | None:
 
     Raises BadFile as `read_point` does.
     """
-    chain = grid.model(grid.laws[0], next(iter(grid.a.values()))).chain
+    chain = study.chain
     if chain.ends == "ring" or chain.is_network:
         return None
-    every = -(-int(np.prod(grid.shape)) * FRAMES * chain.blocks // LARGEST)
-    values = list(grid.a)[::every]
+    points = all_points(study)
+    every = -(-len(points) * FRAMES * chain.blocks // LARGEST)
+    values = list(study.grid)[::every]
     units, first, frames, packed = [], [], [], []
-    interval = EVERY * next(iter(grid.settings.values())).trajectory_sampling
-    for _, point in grid:
-        if point[-1] not in values:
+    interval = EVERY * study.settings(study.laws[0]).trajectory_sampling
+    for point in points:
+        if point["a"] not in values:
             continue
-        run = read_point(grid, point, ("position", "trajectory_time"))
+        run = read_point(study, results, point, ("position", "trajectory_time"))
         count = min(FRAMES, (len(run["position"]) - 1) // EVERY)
         position, time = (run[name][-1 - EVERY * count :: EVERY] for name in ("position", "trajectory_time"))
-        ground = position + grid.models["v"] * (time - time[:1])[:, None]
+        ground = position + study.config["v"] * (time - time[:1])[:, None]
         unit, steps = _steps(ground)
         units.append(float(f"{unit:.6g}"))
         first.append([round(float(value), 5) for value in ground[0]] if unit else [])
         frames.append(len(steps))
         packed.append(steps.T.tobytes())
     return {
-        "v": grid.models["v"],
+        "v": study.config["v"],
         "every": every,
         "interval": interval,
         "blocks": chain.blocks,

@@ -6,13 +6,10 @@ from burridge_knopoff.model.model import LOADINGS, Model
 from burridge_knopoff.model.ranges import OneOf
 
 
-def is_quasistatic(loading: str, model: Model, solver: str) -> bool:
-    """Return whether loading is quasi-static.
-
-    Raises ValueError, one line, if it is neither of LOADINGS, or if model or solver do not allow it.
-    """
+def check_loading(loading: str, model: Model, solver: str) -> None:
+    """Check that loading is one of LOADINGS, and that model and solver allow it; raises ValueError, one line."""
     if OneOf(LOADINGS).form(loading, "loading") == "steady":
-        return False
+        return
     if float(model.law(0.0)) >= 1.0:
         raise ValueError(
             f"loading: got 'quasistatic', expected steady: friction of the law {model.law.name} does not drop at the "
@@ -20,4 +17,3 @@ def is_quasistatic(loading: str, model: Model, solver: str) -> bool:
         )
     if solver != "series":
         raise ValueError(f"loading: got 'quasistatic', expected steady with the solver {solver}; series allows both")
-    return True

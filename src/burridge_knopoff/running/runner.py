@@ -13,7 +13,7 @@ from burridge_knopoff.kernel._core import Catalogue, EventLog, Exponents, Observ
 from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.kernel_model import kernel_model
-from burridge_knopoff.running.loading import is_quasistatic
+from burridge_knopoff.running.loading import check_loading
 from burridge_knopoff.running.normal_modes import normal_modes
 from burridge_knopoff.running.section import SUM, Section
 from burridge_knopoff.running.status import Status
@@ -77,7 +77,7 @@ class Runner:
                 "solver: got 'map', expected series | rk4: map needs a closed form, a friction law that is linear and "
                 "not too steep, in a uniform chain with open ends and without dashpots"
             )
-        quasistatic = is_quasistatic(loading, model, solver)
+        check_loading(loading, model, solver)
         self.model = model
         # A continued run repeats the steps of the whole run only if these are equal.
         stepping = solver in FIXED_STEP_SOLVERS
@@ -103,7 +103,7 @@ class Runner:
                 observer is not None,
                 choice,
                 STEP_LIMIT,
-                model.v if quasistatic else 0.0,
+                model.v if loading == "quasistatic" else 0.0,
             )
             if solver == "map":
                 self.kernel.use_modes(partial(normal_modes, model.chain))

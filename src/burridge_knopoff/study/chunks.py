@@ -26,7 +26,7 @@ def incomplete_chunks(study: Study, results: Path) -> list[Path]:
         mark = results / CHUNK.format(chunk=chunk)
         if mark.exists():
             finished = mark.stat().st_mtime
-            paths = (results / "points" / study.point_file.format(**point) for point in points)
+            paths = (results / study.run_file(**point) for point in points)
             if not all(path.exists() and path.stat().st_mtime <= finished for path in paths):
                 marks.append(mark)
     return marks

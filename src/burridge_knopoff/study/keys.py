@@ -45,7 +45,7 @@ def study_keys(study: Study, name: str) -> list[str]:
     """Return the keys that decide a property of `Study` in a figure."""
     return {
         "marked_states": [*MODEL_KEYS, "initial", "basins.initial", "basins.a"],
-        "chain_description": [*MODEL_KEYS, "grid", "a_digits"] if study.is_plane else ["chain"],
+        "chain": ["chain", "grid", "a_digits"] if study.is_plane else ["chain"],
         "law_descriptions": ["laws"],
         "shown_a": ["figures.a"],
         "shown_law": ["figures.law"],

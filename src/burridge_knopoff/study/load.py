@@ -15,7 +15,7 @@ from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.springs import has_digest
 from burridge_knopoff.motion.chain_settings import Sample
 from burridge_knopoff.provenance.files import display_path
-from burridge_knopoff.running.loading import is_quasistatic
+from burridge_knopoff.running.loading import check_loading
 from burridge_knopoff.study import rules
 from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.grid import parameters_of, resolve_grid
@@ -93,7 +93,7 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
     with rules.error_prefix("catalogue."):
         loading = settings_from_config(CatalogueSettings, filled.get("catalogue", {})).loading
         for law, name in product(study.laws, study.catalogue_a):
-            is_quasistatic(loading, study.model(law, study.grid[name]), filled["solver"][law])
+            check_loading(loading, study.model(law, study.grid[name]), filled["solver"][law])
     for law in study.laws if has_springs and "solvers" not in study.omitted_stages else ():
         for solver in study.other_solvers(law):
             rules.check_comparison(study.settings(law, solver), chain, "step" in config.get("solvers", {}))

@@ -8,7 +8,6 @@ from typing import Any
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.model.parameters import set_parameters
 from burridge_knopoff.motion.settings import MotionSettings
 
 #: Keys of a config that belong to the criteria of motions, besides `motion`.
@@ -37,4 +36,4 @@ def model_of(
     """
     chain = Chain(**{**config["chain"], **({} if blocks is None else {"blocks": blocks})})
     model = Model(chain, law_of(law, a, config["laws"][law]), config["v"], config["contact"])
-    return set_parameters(model, others) if others else model
+    return model.at(**others) if others else model

@@ -19,15 +19,15 @@ from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.study import Study
 
 
-def make_points(study: Study, points: Sequence[Mapping[str, str]], folder: Path) -> int:
+def make_points(study: Study, points: Sequence[Mapping[str, str]], results: Path) -> int:
     """Simulate those of some points that are missing, corrupt or out of date; return how many there were.
 
-    points : their wildcards; folder : `points` of the results
+    points : their wildcards; results : folder of the study
     Raises RuntimeError if a point fails, after all others are done: one line with the first such point and its command.
     """
     wanted, failed = [], []
     for point in points:
-        path = folder / study.point_file.format(**point)
+        path = results / study.run_file(**point)
         run = study.run_of(**point)
         command = simulate_command(*run)
         try:

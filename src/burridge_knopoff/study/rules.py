@@ -19,7 +19,7 @@ from burridge_knopoff.model.chain import BLOCKS, Chain
 from burridge_knopoff.model.fields import Field, Keys
 from burridge_knopoff.model.initial import PAPER_STATES, PAPER_V, initial_state
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.model.parameters import plain_name, set_parameters
+from burridge_knopoff.model.parameters import plain_name
 from burridge_knopoff.model.ranges import OneOf, Range, Several
 from burridge_knopoff.provenance.files import LONGEST_NAME
 from burridge_knopoff.running.settings import LONGEST_STEP, SOLVERS, Settings, shortest_step
@@ -128,7 +128,7 @@ def check_models(
             base = Model(chain, law, config["v"], config["contact"])
             for values in others:
                 with error_prefix(f"grid ({name} law, a = {a:g}): " if values else ""):
-                    model = set_parameters(base, values) if values else base
+                    model = base.at(**values) if values else base
                 if solver == "map" and not model.has_closed_form:
                     solver_names = " | ".join(solver for solver in SOLVERS if solver != "map")
                     raise refusal(

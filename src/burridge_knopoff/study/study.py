@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
@@ -13,12 +13,12 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.initial import InitialState, initial_state
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.model.parameters import parse_indexed_name, plain_name
+from burridge_knopoff.model.parameters import CHAIN_PARAMETERS, parameter_key, plain_name, set_chain_parameters
 from burridge_knopoff.proof.scope import is_covered
 from burridge_knopoff.running.command import simulate_command
 from burridge_knopoff.running.settings import SOLVERS, Settings
 from burridge_knopoff.study.grid import parameters_of
-from burridge_knopoff.study.model import MODEL_KEYS, model_of
+from burridge_knopoff.study.model import model_of
 from burridge_knopoff.study.paper import PAPER_A
 from burridge_knopoff.study.paths import point_file
 from burridge_knopoff.study.stages import CHAIN_LENGTHS, STAGES, missing_library
@@ -111,20 +111,15 @@ class Study:
     @property
     def has_one_chain(self) -> bool:
         """Whether all points have the same chain."""
-        varied = {
-            (parse_indexed_name(name) or (name,))[0] for name, values in self.parameters.items() if len(values) > 1
-        }
-        return not varied & set(self.config["chain"])
+        varied = {parameter_key(name) for name, values in self.parameters.items() if len(values) > 1}
+        return varied.isdisjoint(CHAIN_PARAMETERS)
 
     @property
-    def chain_description(self) -> dict[str, Any]:
-        """The arguments of `Chain`; those of the first point if several parameters vary."""
-        chain = self.config["chain"]
-        if not self.is_plane:
-            return chain
-        first = self.model(self.laws[0], next(iter(self.grid.values())), **self.other_values[0]).chain
-        varied = {(parse_indexed_name(name) or (name,))[0] for name in self.parameters}
-        return {key: getattr(first, key) if key in varied else value for key, value in chain.items()}
+    def chain(self) -> Chain:
+        """The chain of the first point."""
+        first = self.other_values[0].items()
+        values = {name: value for name, value in first if parameter_key(name) in CHAIN_PARAMETERS}
+        return set_chain_parameters(Chain(**self.config["chain"]), values)
 
     @property
     def has_several_laws(self) -> bool:
@@ -134,12 +129,12 @@ class Study:
     @property
     def is_mirror_symmetric(self) -> bool:
         """Whether the chain is its own mirror image."""
-        return self.model(self.laws[0], self.shown_a, **self.other_values[0]).chain.is_mirror_symmetric
+        return self.chain.is_mirror_symmetric
 
     @property
     def has_paper_chain(self) -> bool:
         """Whether the chain is that of the paper, the only one that its claims are about."""
-        return self.model(self.laws[0], self.shown_a, **self.other_values[0]).chain.is_equivalent_to(Chain(3))
+        return self.chain.is_equivalent_to(Chain(3))
 
     @property
     def has_synchronized_orbit(self) -> bool:
@@ -208,6 +203,10 @@ class Study:
                 marked[name] = [(float(u[0]), float(u[-1])) for (u, _), _ in states]
         return marked
 
+    def of_laws(self, laws: Sequence[str]) -> Study:
+        """Return the study of some of its laws."""
+        return replace(self, config={**self.config, "laws": {law: self.config["laws"][law] for law in laws}})
+
     def model(self, law: str, a: float, **others: float) -> Model:
         """Return the model of the study for one of its laws at one a, and at values of its other parameters."""
         return model_of(self.config, law, a, others=others)
@@ -272,15 +271,10 @@ class Study:
         """Return the `bk simulate` command of a grid point given by its wildcards, without --out; see `run_of`."""
         return simulate_command(*self.run_of(law, initial, a, solver, **others))
 
-    @property
-    def points(self) -> dict[str, Any]:
-        """All settings on which the point files depend, in the types of a config."""
-        return {
-            **{key: self.config[key] for key in MODEL_KEYS},
-            "initial": {name: dict(state) for name, state in self.config["initial"].items()},
-            "parameters": {name: dict(values) for name, values in self.parameters.items()},
-            "settings": {law: asdict(self.settings(law)) for law in self.laws},
-        }
+    def run_file(self, solver: str | None = None, **point: str) -> str:
+        """Return the path in the results of a grid point given by its wildcards; solver : see `run_of`."""
+        folder = f"solvers/{solver}" if solver else "points"
+        return f"{folder}/{self.point_file.format(**point)}"
 
 
 def all_points(study: Study) -> list[dict[str, str]]:
@@ -293,10 +287,8 @@ def all_points(study: Study) -> list[dict[str, str]]:
 
 def run_files(study: Study) -> dict[str, dict[str, str]]:
     """Return {point file in the results: its wildcards, the arguments of `Study.command`}, also by other solvers."""
-    file, again = f"points/{study.point_file}", f"solvers/{{solver}}/{study.point_file}"
     repeated = [] if "solvers" in study.omitted_stages else solver_points(study)
-    runs = [(file, all_points(study)), (again, repeated)]
-    return {form.format(**point): point for form, points in runs for point in points}
+    return {study.run_file(**point): point for point in (*all_points(study), *repeated)}
 
 
 def solver_points(study: Study) -> list[dict[str, str]]:

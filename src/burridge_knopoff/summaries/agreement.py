@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,9 +23,10 @@ from burridge_knopoff.motion.kind import (
     is_same_result,
 )
 from burridge_knopoff.study.formatting import format_count
+from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import compare_laws, pair_variables
-from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
+from burridge_knopoff.summaries.points import EVENTS, all_events, point_axes, read_point
 from burridge_knopoff.summaries.runs import RUN, over_runs
 
 # Significant digits: the last bits of a product of vectors depend on their alignment in memory.
@@ -139,11 +141,14 @@ def settle(
     }
 
 
-def compare_events(grid: Grid) -> xarray.Dataset:
-    """Return the variables of EVENT_VARIABLES, from the point files of each other law and of the first law."""
+def compare_events(study: Study, results: Path) -> xarray.Dataset:
+    """Return the variables of EVENT_VARIABLES, from the point files of each other law and of the first law.
 
-    def compare(run: Mapping[str, np.ndarray], point: Sequence[str]) -> dict[str, float]:
-        first = read_point(grid, (grid.laws[0], *point[1:]), _EVENTS_READ)
+    results : folder of the study
+    """
+
+    def compare(run: Mapping[str, np.ndarray], point: Mapping[str, str]) -> dict[str, float]:
+        first = read_point(study, results, {**point, "law": study.laws[0]}, _EVENTS_READ)
         count, until = common_order(all_events(first), all_events(run))
         return {
             "section_distance": _section_distance(_upward_crossings(first), _upward_crossings(run)),
@@ -151,9 +156,9 @@ def compare_events(grid: Grid) -> xarray.Dataset:
             "event_order_time": min(until, float(first["end_time"]), float(run["end_time"])),
         }
 
-    other_runs = grid.of_laws(grid.laws[1:])
-    values = over_runs(other_runs, EVENT_VARIABLES, _EVENTS_READ, compare)
-    coordinates = {**grid.axes(), **axes(other_law=other_runs.laws)}
+    others = study.of_laws(study.laws[1:])
+    values = over_runs(others, results, EVENT_VARIABLES, _EVENTS_READ, compare)
+    coordinates = {**point_axes(study), **axes(other_law=others.laws)}
     del coordinates["law"]
     return xarray.Dataset({name: (_PAIR, array) for name, array in values.items()}, coordinates)
 

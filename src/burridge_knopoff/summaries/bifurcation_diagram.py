@@ -6,6 +6,7 @@ The file is a contiguous ragged array of the CF conventions.
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import xarray
@@ -15,7 +16,8 @@ from burridge_knopoff.dataset.summary import AXES, axes, summary
 from burridge_knopoff.dataset.variables import DIRECTION, Variable
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.study.formatting import span
-from burridge_knopoff.summaries.points import Grid, read_point
+from burridge_knopoff.study.study import Study, all_points
+from burridge_knopoff.summaries.points import read_point
 from burridge_knopoff.summaries.sentences import incomplete
 
 #: A slower crossing is a rounding error. In uniform sliding W = W' = 0 within 1e-12 at v = 5; the slowest crossing of
@@ -36,23 +38,25 @@ VARIABLES = {
 OF_POINT = {name: replace(AXES[name], dimensions=("point",)) for name in ("law", "initial", "a")}
 
 
-def summarize(grid: Grid) -> xarray.Dataset:
+def summarize(study: Study, results: Path) -> xarray.Dataset:
     """Return the section points of all runs, one after another in the order (law, initial, a).
+
+    results : folder of the study
 
     The points of run n are crossing_velocity[start:start + crossing_count[n]], where start is the sum of the previous
     counts; `section_points` selects them by law and initial state. A run that did not complete has none.
     """
     velocity, direction, count, status, law, initial, a = [], [], [], [], [], [], []
-    for _, point in grid:
-        read = read_point(grid, point, ["crossing_velocity", "crossing_direction", "status"])
+    for point in all_points(study):
+        read = read_point(study, results, point, ["crossing_velocity", "crossing_direction", "status"])
         kept = slice(None if read["status"] == Status.COMPLETED else 0)
         velocity.append(read["crossing_velocity"][kept])
         direction.append(read["crossing_direction"][kept])
         count.append(len(velocity[-1]))
         status.append(read["status"])
-        law.append(point[0])
-        initial.append(point[1])
-        a.append(grid.a[point[2]])
+        law.append(point["law"])
+        initial.append(point["initial"])
+        a.append(study.value(point["a"]))
     values = {
         "crossing_velocity": np.concatenate(velocity),
         "crossing_direction": np.concatenate(direction),
@@ -64,7 +68,7 @@ def summarize(grid: Grid) -> xarray.Dataset:
         VARIABLES,
         values,
         axes(OF_POINT, law=law, initial=initial, a=a),
-        {"section": str(grid.section)},
+        {"section": str(study.settings(study.laws[0]).section)},
         module=__name__,
     )
 

@@ -21,7 +21,6 @@ from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pitchfork import branching_orbit
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import (
-    a_unit,
     bifurcations_of,
     critical_a,
     critical_a_error,
@@ -241,7 +240,7 @@ def _fill_transition(values: dict[str, Any], i: int, orbits: KnownOrbits | None,
         BifurcationKind.PITCHFORK if transverse_multiplier(orbits, critical) > 0.0 else BifurcationKind.PERIOD_DOUBLING
     )
     values["bifurcation_kind"][i] = kind
-    runs = critical + a_unit(orbits.model.chain) * np.array(OFFSETS)
+    runs = critical + orbits.model.chain.a_unit * np.array(OFFSETS)
     values["sweep_asymmetry"][i] = sweep(orbits, runs), sweep(orbits, runs[::-1])[::-1]
     values["hysteresis"][i] = np.abs(np.diff(values["sweep_asymmetry"][i], axis=0)).max()
     if kind == BifurcationKind.PITCHFORK:

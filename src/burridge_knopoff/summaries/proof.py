@@ -201,8 +201,6 @@ def _orbit_values(orbit: ProvedOrbit, model: Model) -> dict[str, Any]:
         raise ProofError(f"events: got {', '.join(names)}, expected {', '.join(EVENTS)}")
     with arithmetic():
         positions = [limits(model.v * place) for place in orbit.enclosure.inner[:POSITIONS]]
-        speed = orbit.a * model.v * orbit.speed_range()
-        friction = limits(1 - speed if is_linearized(model) else 1 / (1 + speed))[0]
         force = limits(1 - model.v * orbit.force_margin_range())[0]
     return {
         "a": limits(orbit.a),
@@ -211,7 +209,7 @@ def _orbit_values(orbit: ProvedOrbit, model: Model) -> dict[str, Any]:
         "position": positions,
         "multiplier": [limits(orbit.multiplier), limits(orbit.symmetric_multiplier)],
         "multiplier_slope": limits(orbit.slope),
-        "least_friction": friction,
+        "least_friction": limits(orbit.friction_range(model.v))[0],
         "least_spring_force": force,
     }
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,8 @@ from burridge_knopoff.motion.period import SECTION, count_distinct, repetition_o
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.settling import LEVELS
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.summaries.points import Grid, read_point
+from burridge_knopoff.study.study import Study, all_points
+from burridge_knopoff.summaries.points import point_axes, read_point
 from burridge_knopoff.summaries.sentences import RUN as LINE
 from burridge_knopoff.summaries.sentences import incomplete, lines_of
 
@@ -55,44 +57,45 @@ VARIABLES = {
 
 
 def over_runs(
-    grid: Grid,
+    study: Study,
+    results: Path,
     variables: Mapping[str, Variable],
     read: Sequence[str],
-    function: Callable[[Mapping[str, np.ndarray], Sequence[str]], Mapping[str, Any]],
+    function: Callable[[Mapping[str, np.ndarray], Mapping[str, str]], Mapping[str, Any]],
     **sizes: int,
 ) -> dict[str, np.ndarray]:
     """Return the values that a function computes from each run, in arrays over (law, initial, parameters).
 
+    results : folder of the study
     variables : the first three dimensions of each are those of RUN, of which `a` stands for all parameters
     read : names of the variables of a point file that the function needs
-    function : takes these variables and the names of the point; variables that it leaves out are missing
+    function : takes these variables and the wildcards of the point; variables that it leaves out are missing
     sizes : of the further dimensions
     """
-    places = {f"parameter {k}": size for k, size in enumerate(grid.shape[2:])}
-    shapes = {"law": grid.shape[0], "initial": grid.shape[1], **places, **sizes}
+    places = {f"parameter {k}": len(values) for k, values in enumerate(study.parameters.values())}
+    runs = {"law": len(study.laws), "initial": len(study.initial), **places}
     dimensions = {
-        name: replace(item, dimensions=("law", "initial", *places, *item.dimensions[3:]))
-        for name, item in variables.items()
+        name: replace(item, dimensions=(*runs, *item.dimensions[len(RUN) :])) for name, item in variables.items()
     }
-    values = empty_columns(dimensions, shapes)
-    for index, point in grid:
-        for name, value in function(read_point(grid, point, read), point).items():
+    values = empty_columns(dimensions, {**runs, **sizes})
+    for index, point in zip(np.ndindex(*runs.values()), all_points(study), strict=True):
+        for name, value in function(read_point(study, results, point, read), point).items():
             values[name][index] = value
     return values
 
 
-def summarize(grid: Grid, period_tolerance: float, longest_period: float) -> xarray.Dataset:
+def summarize(study: Study, results: Path, period_tolerance: float, longest_period: float) -> xarray.Dataset:
     """Return the scalars of all runs.
 
+    results : folder of the study
     period_tolerance, longest_period : of a repetition, see `MotionSettings`
     Raises BadFile, one line, for a point that is missing, corrupt or out of date.
     """
     motion = MotionSettings(period_tolerance=period_tolerance, longest_period=longest_period)
 
-    def scalars(run: Mapping[str, np.ndarray], point: Sequence[str]) -> dict[str, Any]:
-        law, _, *names = point
+    def scalars(run: Mapping[str, np.ndarray], point: Mapping[str, str]) -> dict[str, Any]:
         values: dict[str, Any] = {name: run[name] for name in _COPIED}
-        values["mirror_symmetric"] = grid.model_of(law, *names).chain.is_mirror_symmetric
+        values["mirror_symmetric"] = study.run_of(**point)[0].chain.is_mirror_symmetric
         if run["status"] == Status.COMPLETED:
             upward = run["crossing_velocity"][run["crossing_direction"] > 0]
             values["section_count"] = count_distinct(upward[len(upward) // 2 :])
@@ -102,15 +105,15 @@ def summarize(grid: Grid, period_tolerance: float, longest_period: float) -> xar
             values |= {f"repetition_{name}": value for name, value in vars(repetition).items()}
         return values
 
-    exponents = next(iter(grid.settings.values())).exponent_count(grid.chain)
-    read = [*_COPIED, *SECTION, "v"]
-    values = over_runs(grid, VARIABLES, read, scalars, exponent=exponents, level=len(LEVELS))
-    parameters = grid.axes()
+    settings = study.settings(study.laws[0])
+    sizes = {"exponent": settings.exponent_count(study.chain), "level": len(LEVELS)}
+    values = over_runs(study, results, VARIABLES, [*_COPIED, *SECTION, "v"], scalars, **sizes)
+    parameters = point_axes(study)
     coordinates = {**parameters, **axes({"level": POINT_VARIABLES["level"]}, level=LEVELS)}
     # A parameter of the grid has a coordinate of its own.
     if "v" not in parameters:
-        coordinates["v"] = ((), grid.models["v"], POINT_VARIABLES["v"].all_attributes())
-    about = {"section": str(grid.section), "period_tolerance": period_tolerance, "longest_period": longest_period}
+        coordinates["v"] = ((), study.config["v"], POINT_VARIABLES["v"].all_attributes())
+    about = {"section": str(settings.section), "period_tolerance": period_tolerance, "longest_period": longest_period}
     variables = {
         name: replace(item, dimensions=(*parameters, *item.dimensions[len(RUN) :])) for name, item in VARIABLES.items()
     }

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray
 
+from burridge_knopoff.dataset.columns import empty_columns
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.running.status import STATUS_WORDS, Status
 from burridge_knopoff.study.formatting import format_count
-from burridge_knopoff.study.study import Study
+from burridge_knopoff.study.study import Study, all_points
 from burridge_knopoff.summaries.event_order import common_order
-from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
-from burridge_knopoff.summaries.runs import RUN, over_runs
+from burridge_knopoff.summaries.points import EVENTS, all_events, point_axes, read_point
 from burridge_knopoff.summaries.sentences import incomplete
 
 NO_RUN = -1
@@ -54,77 +53,52 @@ VARIABLES = {
         "points, -1 if there is no run",
     ),
 }
-#: Variables of single runs, compared with the solver of the study's points.
-RUN_VARIABLES = {
-    name: replace(item, dimensions=RUN) for name, item in VARIABLES.items() if not name.startswith("difference")
-}
-_MISSING = {name: item.missing for name, item in RUN_VARIABLES.items()}
 SOLVER = Variable(("solver",), "O", "solver", coordinate=True)
 _COPIED = ("mean_distance", "mean_distance_error", "status", "step_count", "end_time")
 _READ = [*_COPIED, *EVENTS]
 
 
 def compare_solvers(config: Mapping[str, Any], results: Path) -> xarray.Dataset:
-    """Return the comparison of a study's points at a few values of a with their repetitions.
+    """Return the comparison of a study's points at a few values of a with their repetitions by other solvers.
 
     config : the keys of the study's config that define these runs; results : folder of the study
     """
     study = Study.of_keys({**config, "a": config["solvers"]["a"]})
-    settings = {
-        solver: {law: study.settings(law, solver) for law in study.laws if solver in study.other_solvers(law)}
-        for solver in SOLVERS
-    }
-    grid = Grid.from_points(results / "points", study.points)
-    other_grids = {solver: grid.copy_with(results / "solvers" / solver, of) for solver, of in settings.items()}
-    return summarize(grid, other_grids, config["solvers"]["step"])
-
-
-def summarize(grid: Grid, other_grids: Mapping[str, Grid], step: float) -> xarray.Dataset:
-    """Compare the solvers of each law at every point of a grid.
-
-    grid : the study's points at the values of a that are compared
-    other_grids : {solver: its runs of the same points, with settings for each law whose points another solver computes}
-    step : of rk4 in these runs, unless rk4 computes the study's points
-    """
-    solver_of_law = {law: grid.settings[law].solver for law in grid.laws}
-    parts = []
-    for solver in SOLVERS:
-        of_solver = [_runs_by(solver, runs, grid) for runs in (grid, other_grids.get(solver)) if runs]
-        parts.append(xarray.concat(of_solver, "law").reindex(law=list(grid.laws), fill_value=_MISSING))
-    runs = xarray.concat(parts, "solver").assign_coords(axes({"solver": SOLVER}, solver=SOLVERS))
-    solvers = xarray.DataArray(list(solver_of_law.values()), {"law": list(grid.laws)}, "law")
-    reference = runs.sel(solver=solvers).drop_vars("solver")
-    error = xarray.apply_ufunc(np.hypot, runs["mean_distance_error"], reference["mean_distance_error"])
-    values = runs.assign(
-        difference=runs["mean_distance"] - reference["mean_distance"],
-        # A run does not differ from itself.
-        difference_error=error * (runs["solver"] != solvers),
-    ).transpose("law", "solver", "initial", "a")
+    solvers = config["solver"]
+    coordinates = {**axes({"solver": SOLVER}, solver=SOLVERS), **point_axes(study)}
+    values = empty_columns(VARIABLES, {name: len(coordinates[name][1]) for name in _AXES})
+    indices = np.ndindex(len(study.laws), len(study.initial), len(study.grid))
+    for (i, *place), point in zip(indices, all_points(study), strict=True):
+        law = point["law"]
+        reference = read_point(study, results, point, _READ)
+        runs = {solvers[law]: reference}
+        for solver in study.other_solvers(law):
+            runs[solver] = read_point(study, results, {**point, "solver": solver}, _READ)
+        for solver, run in runs.items():
+            for name, value in _compare(run, reference).items():
+                values[name][i, SOLVERS.index(solver), *place] = value
     return summary(
         "Independent solvers of the same equations",
         VARIABLES,
         values,
-        {"law": values["law"], "solver": values["solver"], **grid.axes()},
-        {**{f"solver_{law}": solver for law, solver in solver_of_law.items()}, "step": step},
+        coordinates,
+        {**{f"solver_{law}": solvers[law] for law in study.laws}, "step": config["solvers"]["step"]},
         module=__name__,
     )
 
 
-def _runs_by(solver: str, runs: Grid, reference: Grid) -> xarray.Dataset:
-    """Return RUN_VARIABLES for the laws whose runs in a grid are by one solver, over (law, initial, a).
-
-    reference : the study's points
-    """
-
-    def compare(run: Mapping[str, np.ndarray], point: Sequence[str]) -> dict[str, Any]:
-        reference_run = read_point(reference, point, _READ)
-        count, until = common_order(all_events(run), all_events(reference_run))
-        until = min(until, float(run["end_time"]), float(reference_run["end_time"]))
-        return {**{name: run[name] for name in _COPIED}, "event_order_count": count, "event_order_time": until}
-
-    chosen = runs.of_laws([law for law, settings in runs.settings.items() if settings.solver == solver])
-    values = over_runs(chosen, RUN_VARIABLES, _READ, compare)
-    return xarray.Dataset({name: (RUN, array) for name, array in values.items()}, chosen.axes())
+def _compare(run: Mapping[str, np.ndarray], reference: Mapping[str, np.ndarray]) -> dict[str, Any]:
+    """Return VARIABLES for one run; reference : the run of the study's points."""
+    count, until = common_order(all_events(run), all_events(reference))
+    error = np.hypot(run["mean_distance_error"], reference["mean_distance_error"])
+    return {
+        **{name: run[name] for name in _COPIED},
+        "difference": run["mean_distance"] - reference["mean_distance"],
+        # A run does not differ from itself.
+        "difference_error": error * (run is not reference),
+        "event_order_time": min(until, float(run["end_time"]), float(reference["end_time"])),
+        "event_order_count": count,
+    }
 
 
 def digest(data: xarray.Dataset) -> str:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,8 +18,9 @@ from burridge_knopoff.motion.jumps import event_jumps
 from burridge_knopoff.periodic_orbits.grazing_distances import longest_spacing
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.status import Status
+from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.correlation import correlation
-from burridge_knopoff.summaries.points import EVENTS, Grid, all_events
+from burridge_knopoff.summaries.points import EVENTS, all_events, point_axes
 from burridge_knopoff.summaries.runs import RUN, over_runs
 from burridge_knopoff.summaries.sentences import RUN as LINE
 from burridge_knopoff.summaries.sentences import incomplete, lines_of, values_where
@@ -76,25 +78,22 @@ VARIABLES = {
 _READ = ["status", "position", "velocity", "trajectory_time", "event_position", "event_velocity", *EVENTS]
 
 
-def summarize(grid: Grid, transient: float, window: float, batches: int) -> xarray.Dataset:
+def summarize(study: Study, results: Path) -> xarray.Dataset:
     """Return rates, durations and velocities of the stick-slip motion; NaN for a run that did not complete.
 
-    transient, window, batches : of the runs; stops are counted from transient to transient + window
+    results : folder of the study. Stops are counted in the window of its runs
     """
-    blocks = grid.chain.blocks
+    about = {name: study.config[name] for name in ("transient", "window", "batches")}
 
-    def cycles(run: Mapping[str, np.ndarray], point: Sequence[str]) -> dict[str, Any]:
-        if run["status"] != Status.COMPLETED:
-            return {}
-        law, _, *names = point
-        return _cycles(run, grid.model_of(law, *names), transient, window, batches)
+    def cycles(run: Mapping[str, np.ndarray], point: Mapping[str, str]) -> dict[str, Any]:
+        return _cycles(run, study.run_of(**point)[0], **about) if run["status"] == Status.COMPLETED else {}
 
     return summary(
         "Stick-slip cycles of each block, and correlation of the velocities of the end blocks",
         VARIABLES,
-        over_runs(grid, VARIABLES, _READ, cycles, block=blocks),
-        {**grid.axes(), **axes(block=range(1, blocks + 1))},
-        {"transient": transient, "window": window, "batches": batches},
+        over_runs(study, results, VARIABLES, _READ, cycles, block=study.blocks),
+        {**point_axes(study), **axes(block=range(1, study.blocks + 1))},
+        about,
         module=__name__,
     )
 

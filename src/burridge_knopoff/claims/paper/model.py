@@ -169,6 +169,8 @@ def velocities_near_driver(
 
     Their ratio to v may differ from 1 by a twentieth, and loosely by a tenth. Both are numbers of the paper, so that
     neither the grid of a nor the convention matters.
+
+    law : which a study needs; the numbers do not depend on it
     """
     evidence.check_blocks()
     for name in initial:
