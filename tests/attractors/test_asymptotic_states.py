@@ -7,7 +7,17 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, MotionKind, law_of, limit_cycle, simulate, synchronized_orbit
+from burridge_knopoff import (
+    Chain,
+    InitialState,
+    Model,
+    MotionKind,
+    find_attractors,
+    law_of,
+    limit_cycle,
+    simulate,
+    synchronized_orbit,
+)
 from burridge_knopoff.attractors import asymptotic_states as module
 from burridge_knopoff.attractors.asymptotic_states import AsymptoticState, asymptotic_states
 from burridge_knopoff.attractors.labels import UNDETERMINED, advance
@@ -156,12 +166,15 @@ def test_the_average_over_chaos_and_its_mirror_image_is_used(script_answers, at,
     assert (state.mean_distance, state.mean_distance_error) == ((0.2, 0.01) if whole else (0.3, 0.0))
 
 
-def test_mirror_images_have_the_same_numbers(monkeypatch):
-    images = [stand_in(kind=MotionKind.CHAOTIC, partner=partner) for partner in (1, 0)]
-    monkeypatch.setattr(module, "find_attractors", lambda *_, **__: (images, np.array([1, 0, 1])))
-    monkeypatch.setattr(module, "lifetimes", lambda *_: [Lifetime(0, 1e9)] * 2)
-    monkeypatch.setattr(module, "_state_on", lambda model, attractors, index, *_: index)
-    assert asymptotic_states(pair("linearized", 0.18), [APART] * 3) == [0, 0, 0]
+def test_mirror_images_have_the_same_numbers():
+    """The thin chaos of two blocks lies on one side, and its mirror image on the other."""
+    model, state = pair("linearized", 0.08), STATES[0]
+    states = [state, InitialState("mirrored", state.position[::-1], state.velocity[::-1])]
+    attractors, labels = find_attractors(model, replace(SEARCH, samples=0), starts=states)
+    assert [attractors[index].partner for index in labels] == labels[::-1].tolist() == [1, 0]
+    first, second = asymptotic_states(model, states)
+    assert first.kind == MotionKind.CHAOTIC
+    assert first == second
 
 
 @pytest.mark.parametrize("start", ["moving", "tested"])

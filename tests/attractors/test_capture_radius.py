@@ -1,4 +1,4 @@
-"""Capture radii of constructed sets, with scripted results of the perturbed trajectories."""
+"""Capture radii of constructed sets, and of fixed points of maps whose basins are known."""
 
 from dataclasses import replace
 
@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, ChainState, Model, MotionKind, SearchSettings, law_of
-from burridge_knopoff.attractors import capture_radius as radius
 from burridge_knopoff.attractors import slow_set
 from burridge_knopoff.attractors.attractor import perturb, required_returns
 from burridge_knopoff.attractors.capture_radius import Capture, embedded_orbits
 from burridge_knopoff.attractors.labels import label
 from burridge_knopoff.attractors.slow_set import sample_slow_set
+from tests.maps import TWO_WELLS, MapModel, rows_of
 from tests.motion.stand_in import ASYMMETRIC, at, section, stand_in
 
 MODEL = Model(Chain(3), law_of("linearized", 0.08), 0.2)
@@ -55,48 +55,48 @@ def test_radii_are_bounded_by_the_distances_to_other_attractors():
         assert features == {(0.1, 8, 10_000.0), (0.04, 20, 0.0)}
 
 
-@pytest.fixture
-def capture(monkeypatch):
-    """Return a function that determines a radius with scripted labels for each group of perturbed trajectories."""
-
-    def captures(listed, index, reached, least=1e-5):
-        calls, left = [], iter(reached)
-
-        def label(_, attractors, starts, time_limit, *__):
-            assert time_limit == 900.0
-            calls.append((len(starts), [item.radius for item in attractors], attractors[index].patience))
-            return np.array((next(left) * 4)[: len(starts)]), None
-
-        monkeypatch.setattr(radius, "label", label)
-        monkeypatch.setattr(radius, "perturb", lambda start, size, generator: (start, size))
-        monkeypatch.setattr(radius, "advance", lambda model, starts, time: [*starts, time])
-        size = Capture().radius(MODEL, listed, index, least, 1e-6, SETTINGS)
-        assert len(calls) == len(reached)
-        return size, calls
-
-    return captures
+def point(x, radius, **features):
+    """Return a fixed point of a map."""
+    returns = rows_of(np.array([x]))
+    return stand_in(returns=returns, mirror_returns=returns, radius=radius, **features)
 
 
-def test_a_radius_is_accepted_if_all_perturbed_trajectories_come_back(capture):
-    attractors = [at(0.0, radius=0.04), at(9.0, radius=0.001)]
-    size, calls = capture(attractors, 0, [[0], [0]])
-    assert size == 0.04
-    # Four of ten trajectories are followed first; each has to come back to a tenth of the distance.
-    assert calls == [(count, [pytest.approx(0.004), 0.001], 0.0) for count in (4, 6)]
-    assert capture(attractors, 0, [[0], [0, 0, 0, -1], [0], [0]])[0] == 0.02
-    assert capture(attractors, 0, [[1], [1]], least=0.01)[0] == 0.0
-    # The smallest radius scales with v: a factor of 2.
-    assert capture(attractors, 0, [[1], [0], [0]], least=0.01)[0] == 0.02
-    assert capture(attractors, 0, [[1]], least=0.0101)[0] == 0.0
+def radius_of(model, attractors, least=1e-5):
+    return Capture().find_radius(model, attractors, 0, least, 1e-6, SETTINGS)
 
 
-def test_a_trajectory_that_reaches_an_embedded_orbit_has_come_back(capture):
-    attractors = [at(0.0, radius=0.04, patience=2000.0, **CHAOS), at(0.05, radius=0.04)]
-    size, calls = capture(attractors, 0, [[0, 1], [1]])
-    assert size == 0.04
-    # Its returns are too far apart to show that a trajectory comes closer: it is labelled later.
-    assert calls[0] == (5, [0.04, 0.04], 0.0)
-    assert capture(attractors, 1, [[0]], least=0.015)[0] == 0.0
+@pytest.mark.parametrize(("first", "expected"), [(0.3, 0.3), (0.4, 0.4), (0.8, 0.4), (1.6, 0.4)])
+def test_the_radius_is_that_from_which_all_perturbations_come_back(maps, first, expected):
+    """The well is 0.447 above the point that separates the basins; radii are halved."""
+    model = TWO_WELLS.at(0.7)
+    _, middle, well = np.sort(np.roots([-1.0, 0.0, 1.0, -0.3]).real)
+    assert well - middle == pytest.approx(0.447, abs=1e-3)
+    assert radius_of(model, [point(well, first)]) == pytest.approx(expected)
+    # A smaller radius than the least is not tried.
+    assert radius_of(model, [point(well, first)], least=0.5) == 0.0
+
+
+@pytest.mark.parametrize(("multiplier", "comes_back"), [(0.99, True), (0.999, False), (1.0, False), (1.01, False)])
+def test_perturbations_have_to_come_ten_times_closer(maps, multiplier, comes_back):
+    """Within the time limit of 900 iterations: 0.999^900 = 0.4."""
+    model = MapModel(lambda x, a: a * x, lambda x, a: a + 0.0 * x, multiplier)
+    assert radius_of(model, [point(0.0, 0.04)]) == (0.04 if comes_back else 0.0)
+
+
+def test_the_smallest_radius_scales_with_the_velocity(maps):
+    class Fast(MapModel):
+        scale = 2.0
+
+    model = Fast(lambda x, a: a * x, lambda x, a: a + 0.0 * x, 0.5)
+    assert radius_of(model, [point(0.0, 0.04)], least=0.0199) == 0.04
+    assert radius_of(model, [point(0.0, 0.04)], least=0.0201) == 0.0
+
+
+@pytest.mark.parametrize(("features", "radius"), [(CHAOS, 0.04), ({}, 0.0)], ids=str)
+def test_a_trajectory_that_reaches_an_embedded_orbit_has_come_back(maps, features, radius):
+    """All trajectories reach the orbit at 0; only chaos whose returns are as far apart has it within it."""
+    model = MapModel(lambda x, a: a * x, lambda x, a: a + 0.0 * x, 0.5)
+    assert radius_of(model, [point(0.25, 0.04, patience=2000.0, **features), point(0.0, 0.04)]) == radius
 
 
 def test_a_perturbation_changes_positions_and_velocities_of_slipping_blocks():

@@ -7,70 +7,15 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, Model, SearchSettings, law_of
-from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.basins import fractions
-from burridge_knopoff.continuation import attractor_continuation as continuation
 from burridge_knopoff.continuation.attractor_continuation import continue_attractors
 from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MOTION
-from tests.motion.stand_in import at
-
-STILL, OTHER = 0.0, 5.0
-A_VALUES = (0.1, 0.2, 0.3, 0.4)
 
 
-def models(a_values=A_VALUES):
+def models(a_values):
     return [Model(Chain(3), law_of("linearized", a)) for a in a_values]
-
-
-@pytest.fixture
-def scripted(monkeypatch):
-    """Initial states lead to one attractor, and at a = 0.2 also to another one, which exists up to a = 0.3."""
-    followed = []
-
-    class Scripted(Search):
-        def labels(self, starts, check=True):
-            if check:
-                self.attractors = [at(STILL)]
-                self.unsuccessful_states = (b"a state",)
-            else:
-                assert not self.unsuccessful_states
-                followed.append((self.model.a, [round(start.position[1]) for start in starts]))
-            if self.model.a == 0.2 or (not check and self.model.a <= 0.3):
-                self.attractors = [at(STILL), at(OTHER, partner=1)]
-
-        def known_labels(self, starts):
-            places = {round(item.motion.returns[0, 1]): k for k, item in enumerate(self.attractors)}
-            return np.array([places.get(round(start.position[1]), -1) for start in starts])
-
-    def labels(searches, start, pool):
-        return searches, [np.full(7, len(search.attractors)) for search in searches]
-
-    monkeypatch.setattr(continuation, "Search", Scripted)
-    monkeypatch.setattr(continuation, "fraction_labels", labels)
-    return followed
-
-
-def test_attractors_at_one_value_seed_the_others(scripted):
-    """They do so downward and upward as far as they exist; attractors known at both values are not followed again."""
-    whole = continue_attractors(models(), refine=RefinementSettings(1.0))
-    assert scripted == [(0.1, [OTHER]), (0.3, [OTHER]), (0.4, [OTHER])]
-    assert [len(attractors) for attractors in whole.attractors] == [2, 2, 2, 1]
-    assert [branch.tolist() for branch in whole.branch] == [[1, 2], [1, 2], [1, 2], [1]]
-    assert [index.tolist() for index in whole.upward] == [[0, 1], [0, 1], [0, -1], [-1]]
-    assert [index.tolist() for index in whole.downward] == [[-1, -1], [0, 1], [0, 1], [0]]
-    assert [labels.tolist() for labels in whole.samples] == [[2] * 7] * 3 + [[1] * 7]
-    assert whole.grid == [0, 1, 2, 3]
-
-
-def test_a_branch_is_remembered_over_two_of_the_widest_steps(scripted, monkeypatch):
-    """So no branch ends only because the grid is coarser."""
-    calls, branches = [], continuation.branches
-    monkeypatch.setattr(continuation, "branches", lambda *arguments: calls.append(arguments) or branches(*arguments))
-    continue_attractors(models((0.1, 0.2, 0.5, 0.55)), refine=RefinementSettings(1.0))
-    ((_, _, _, reach, *_),) = calls
-    assert reach == pytest.approx(0.6)
 
 
 def same(one, other):

@@ -4,7 +4,7 @@ import pytest
 
 from burridge_knopoff import Chain, Model, MotionKind, law_of
 from burridge_knopoff.attractors.search import Search
-from burridge_knopoff.continuation.matching import Matcher
+from burridge_knopoff.continuation.matching import DistanceMatcher
 from burridge_knopoff.continuation.refinement import refine_searches
 from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.running.processes import parallel_map
@@ -28,7 +28,7 @@ def values():
 
         ends = [Scripted(Model(Chain(3), law_of("linearized", a)), attractors=attractors(a)) for a in (low, high)]
         with parallel_map(1) as pool:
-            (inner,) = refine_searches(ends, RefinementSettings(resolution), Matcher(1.0), pool)
+            (inner,) = refine_searches(ends, RefinementSettings(resolution), DistanceMatcher(1.0), pool)
         return [search.model.a for search in inner], calls
 
     return insert_values

@@ -15,7 +15,6 @@ from burridge_knopoff.running.runner import Runner, run_together
 from burridge_knopoff.running.section import SUM, Section
 from burridge_knopoff.running.simulation import prepare, run
 from burridge_knopoff.running.status import Status
-from tests.scipy_flow import model_events
 
 LAWS = "linearized", "nonlinear", "carlson_langer", "exponential", "stribeck"
 
@@ -130,27 +129,6 @@ def test_runs_end_as_they_do_alone():
     prepared = [prepare(*member) for member in members]
     for single, other, end in zip(alone, prepared, run_together([single.runner for single in prepared]), strict=True):
         assert contents(single) == contents(other.result(other.runner.status_of(end)))
-
-
-@pytest.mark.parametrize("law", ["linearized", "nonlinear"])
-def test_events_against_scipy(law):
-    model, generator = Model(Chain(3), law_of(law, 0.2)), np.random.default_rng(3)
-    runners, starts = [], []
-    for _ in range(LANES + 2):
-        start = model.begin(InitialState("drawn", tuple(generator.uniform(-1.2, -0.4, 3)), (0.1, 0.05, 0.12)))
-        runner = Runner(model, keep_events=True)
-        runner.begin(start)
-        runner.kernel.end = 15.0
-        runners.append(runner)
-        starts.append(start)
-    assert run_in_lockstep([runner.kernel for runner in runners]) == [Status.COMPLETED] * len(runners)
-    for runner, start in zip(runners, starts, strict=True):
-        time, block, kind = runner.events()
-        expected, _ = model_events(model, start, 15.0)
-        assert len(expected) == len(time) > 5
-        for (when, which, how), *event in zip(expected, time, block + 1, kind, strict=True):
-            assert event[1:] == [which, how]
-            assert abs(event[0] - when) < 1e-8
 
 
 def test_ctrl_c_ends_them():

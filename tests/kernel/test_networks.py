@@ -1,4 +1,4 @@
-"""Networks of springs and blocks of unequal mass: events against SciPy, in groups, in lanes, and perturbations."""
+"""Networks of springs and blocks of unequal mass, and their perturbations against finite differences."""
 
 from pathlib import Path
 
@@ -6,12 +6,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, ChainState, Model, law_of
-from burridge_knopoff.model.model import CONTACTS
-from burridge_knopoff.running.ensemble import new_ensemble
-from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.running.status import Status
-from tests.flows import carry, check_events, differences, directions
-from tests.scipy_flow import model_events
+from tests.flows import carry, differences, directions
 
 NETWORK = str(Path(__file__).with_name("damped_network.txt"))
 
@@ -32,26 +27,6 @@ def rest(model, seed=2):
     generator = np.random.default_rng(seed)
     position = generator.uniform(-1.2, -0.9, model.blocks) - model.sliding_offset
     return ChainState(position, np.zeros(model.blocks), np.ones(model.blocks, dtype=bool))
-
-
-@pytest.mark.parametrize("contact", CONTACTS)
-@pytest.mark.parametrize("chain", CHAINS)
-def test_events_against_scipy(law, chain, contact):
-    model = Model(chain, law_of(law, 0.3), contact=contact)
-    start = rest(model)
-    expected, _ = model_events(model, start, 14.0)
-    assert len(expected) > 2
-    for groups in (False, True):
-        runner = Runner(model, keep_events=True, groups=groups)
-        runner.begin(start)
-        assert runner.run(14.0) == Status.COMPLETED
-        time, block, kind = runner.events()
-        check_events(list(zip(time, block + 1, kind, strict=True)), expected, 1e-8)
-    results = new_ensemble(model).run(
-        start.position[None], start.velocity[None], start.stuck[None], [14.0], events=len(expected) + 1
-    )
-    columns = (results[f"event_{name}"][0, : results["event_count"][0]] for name in ("time", "block", "kind"))
-    check_events(list(zip(*columns, strict=True)), expected, 1e-8)
 
 
 @pytest.mark.parametrize("chain", CHAINS)

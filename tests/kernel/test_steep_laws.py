@@ -1,15 +1,12 @@
 """Laws in which friction rises near rest, which does not affect the motion while a block slips fast."""
 
-import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, FormulaLaw, Model
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.runner import Runner
-from tests.flows import check_events
 from tests.kernel.test_ensemble import check_against_scalar
-from tests.scipy_flow import model_events
 
 # Speeds of slip are about 0.1.
 FORMULAS = {
@@ -20,23 +17,6 @@ FORMULAS = {
     "logarithmic": "1 - 0.01*log(1 + u/w)",
     "power": "0.95 + 0.05*(1 + u/w)**-3.5 - a*u",
 }
-
-
-@pytest.mark.parametrize("contact", ["one_sided", "symmetric"])
-@pytest.mark.parametrize("w", [1e-2, 1e-3])
-@pytest.mark.parametrize("name", FORMULAS)
-def test_events_against_scipy(name, w, contact):
-    """The time is short enough for the peer, which needs short steps, to remain accurate."""
-    model = Model(Chain(3), FormulaLaw(0.1, FORMULAS[name], w=w), contact=contact)
-    start = model.begin(PAPER_STATES["minus"])
-    expected, end = model_events(model, start, 6.0)
-    runner = Runner(model, keep_events=True)
-    runner.begin(start)
-    runner.run(6.0)
-    time, block, kind = runner.events()
-    assert len(expected) > 4
-    check_events(list(zip(time, block + 1, kind, strict=True)), expected, 1e-8)
-    assert np.allclose(runner.state().vector(), end, rtol=0.0, atol=1e-8)
 
 
 @pytest.mark.parametrize("w", [1e-2, 1e-3, 1e-4])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, ChainState, InitialState, Model, OrbitError, Symmetry, law_of, limit_cycle
-from burridge_knopoff.periodic_orbits import bifurcations, following
+from burridge_knopoff.periodic_orbits import bifurcations
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bifurcations
 from burridge_knopoff.periodic_orbits.branch_segment import BranchSegment, follow_half_branch
@@ -221,23 +221,6 @@ def test_a_torus_branches_off_where_perturbations_stop_decaying():
         start = ChainState(reference.position + np.array([1e-6, 0.0, 0.0]), reference.velocity, reference.stuck)
         end = Runner(nearby.model).state_after(start, 3000.0 * nearby.period)
         assert (np.abs(end.vector() - reference.vector()).max() > 1e-6) == grows
-
-
-@pytest.mark.parametrize("succeeds", [True, False])
-def test_steps_become_longer_or_shorter_and_end(families, monkeypatch, succeeds):
-    """Steps grow to 5e-4; the branch ends after 200 orbits, or if steps fall below 1e-9."""
-    lengths = []
-
-    def step(points, length):
-        lengths.append(length)
-        return points[-1] if succeeds else None
-
-    monkeypatch.setattr(following, "smooth_step", step)
-    monkeypatch.setattr(following, "approach_grazing", lambda path, length: [])
-    branch = follow(families["linearized"].at(0.08), (0.01, 0.1))
-    assert len(branch) == (200 if succeeds else 1)
-    expected = [1e-4, 2e-4, 4e-4, *[5e-4] * 196] if succeeds else [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9]
-    assert lengths == pytest.approx(expected)
 
 
 def test_a_branch_ends_where_friction_drops_and_an_orbit_grazes():

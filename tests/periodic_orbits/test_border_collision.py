@@ -1,17 +1,28 @@
-"""Steps along a branch that keep its stops, the approach to a corner, and the continuation beyond it."""
+"""Steps along a branch that keep its stops, and the approach to a corner, of maps in closed form."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, OrbitError, Symmetry
-from burridge_knopoff.model.own_units import OwnUnits
+from burridge_knopoff import Chain, Symmetry
 from burridge_knopoff.periodic_orbits import border_collision
 from burridge_knopoff.periodic_orbits.parameter_line import line_along_a
-from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
+from burridge_knopoff.periodic_orbits.pseudo_arclength import begin_branch, step_along
+from tests import normal_forms
+from tests.normal_forms import CRITICAL, orbit_at
 from tests.periodic_orbits.stand_in import only
+
+LINE = line_along_a(Chain(2))
+#: Length along the branch x = 2μ, in which x has the weight 0.01, per change of μ.
+PER_MU = np.sqrt(1.04)
+
+
+def start_at(mu, **fields):
+    """Return the orbit x = 2μ < 0 of x → x/2 + μ, with the border x = 0, and the tangent upward."""
+    form = replace(normal_forms.border_collision(0.5, -0.4), **fields)
+    return begin_branch(orbit_at(form, mu, 2.0 * mu), True, LINE)
 
 
 @pytest.mark.parametrize(
@@ -35,34 +46,19 @@ def test_a_branch_point_lies_where_a_multiplier_reaches_1(values, length, expect
     assert ahead == pytest.approx(expected) or len(way) == 1
 
 
-@pytest.mark.parametrize(
-    ("stop_counts", "simpler", "ahead", "made"),
-    [
-        ((1, 2), None, np.inf, True),
-        ((2, 1), None, np.inf, False),
-        (None, None, np.inf, False),  # none is found
-        # A simpler orbit ends a branch only where the branch joins it.
-        ((1, 2), "simpler", 0.19, True),
-        ((1, 2), "simpler", 0.21, False),
-        ((1, 2), "simpler", np.inf, False),
-    ],
-)
-def test_a_step_keeps_the_stops(monkeypatch, stop_counts, simpler, ahead, made):
-    ahead_point = BranchOrbit(SimpleNamespace(stop_counts=stop_counts), np.zeros(4), line_along_a(Chain(1)))
+@pytest.mark.parametrize(("length", "is_made"), [(5e-4, True), (2e-3, False)])
+def test_a_step_keeps_the_stops(length, is_made):
+    """The border is within 1.02e-3."""
+    step = border_collision.smooth_step([start_at(-1e-3)], length)
+    assert (step is not None) == is_made
+    if step is not None:
+        assert (step.length, step.orbit.stop_counts) == (length, (0, 1))
 
-    def step(point, length):
-        if stop_counts is None:
-            raise OrbitError("none")
-        return ahead_point
 
-    monkeypatch.setattr(border_collision, "step_along", step)
-    monkeypatch.setattr(border_collision, "reduced_orbit", lambda orbit: simpler)
-    monkeypatch.setattr(border_collision, "_distance_to_branch_point", lambda way: ahead)
-    accepted = border_collision.smooth_step([SimpleNamespace(orbit=SimpleNamespace(stop_counts=(1, 2)))], 0.1)
-    assert (accepted is not None) == made
-    if made:
-        assert accepted.orbit is ahead_point.orbit
-        assert accepted.reduced_orbit == simpler
+def test_a_step_to_where_there_is_no_law_is_not_made():
+    point = start_at(-1e-3, exists=lambda mu: mu <= -8e-4)
+    assert border_collision.smooth_step([point], 1e-4) is not None
+    assert border_collision.smooth_step([point], 4e-4) is None
 
 
 @pytest.mark.parametrize(
@@ -86,158 +82,42 @@ def test_a_decreasing_grazing_distance_predicts_a_grazing(before, here, expected
     assert border_collision.distance_to_grazing(*points) == pytest.approx(expected)
 
 
-@dataclass(frozen=True)
-class Place:
-    """A point of a straight branch with a corner at 8e-4; the grazing distance is a power of the remaining length."""
-
-    orbit: float
-    length: float = 1e-3
-    reduced_orbit: str | None = None
-    distance_to_grazing: float = np.nan
-    power: int = 1
-    corner: float = 8e-4
-
-    @property
-    def grazing_distances(self):
-        return SimpleNamespace(values=lambda: np.array([(self.corner - self.orbit) ** self.power, np.inf]))
+def approach(left, length, **fields):
+    """Return the approach to a border that is a length away, and the remaining lengths after each step."""
+    first = start_at(-(left + 1e-3) / PER_MU, **fields)
+    path = [first, step_along(first, 1e-3)]
+    steps = border_collision.approach_grazing(path, length)
+    return steps, left - np.cumsum([point.length for point in steps])
 
 
-@pytest.fixture
-def approach(monkeypatch):
-    """Return the approach to a corner from 0, and the attempted steps; steps beyond the corner fail."""
-
-    def come(length, fails=lambda tried: False, joint=np.inf, **fields):
-        tried = []
-
-        def step(way, length):
-            tried.append(length)
-            assert len(way) >= 2
-            place = way[-1].orbit + length
-            if place > way[-1].corner or fails(len(tried)):
-                return None
-            return replace(way[-1], orbit=place, length=length, reduced_orbit="simpler" if place > joint else None)
-
-        monkeypatch.setattr(border_collision, "smooth_step", step)
-        way = border_collision.approach_grazing([Place(place, **fields) for place in (-2e-3, -1e-3, 0.0)], length)
-        return way, tried
-
-    return come
-
-
-def test_each_step_to_a_corner_leaves_three_percent_of_the_length(approach):
+def test_each_step_to_a_corner_leaves_three_percent_of_the_length():
     """The first step is a hundredth of the length, and the last point is within 1e-10 of the corner."""
-    way, tried = approach(1e-3)
-    left = 7.9e-4 * 0.03 ** np.arange(6)
-    assert tried == pytest.approx([1e-5, *(0.97 * left[:-1])], rel=1e-4, abs=0.0)
-    assert [point.orbit for point in way] == pytest.approx(8e-4 - left, rel=1e-9)
-    assert np.isnan([point.distance_to_grazing for point in way[:-1]]).all()
-    assert way[-1].distance_to_grazing == pytest.approx(1.92e-11, rel=1e-2, abs=0.0)
+    steps, left = approach(8e-4, 1e-3)
+    assert left == pytest.approx(7.9e-4 * 0.03 ** np.arange(6), rel=1e-3, abs=1e-12)
+    assert np.isnan([point.distance_to_grazing for point in steps[:-1]]).all()
+    assert steps[-1].distance_to_grazing == pytest.approx(1.92e-11, rel=1e-2, abs=0.0)
+    assert -steps[-1].value + CRITICAL == pytest.approx(1.92e-11 / PER_MU, rel=1e-2, abs=0.0)
 
 
-def test_failed_steps_are_repeated_with_a_shorter_length(approach):
-    """The following steps are a smaller share of the predicted length."""
-    _, tried = approach(1e-3, lambda tried: tried in (1, 2))
-    left = np.array([8e-4 - 1.6e-6])
-    for share in (0.3104, 0.6208, 0.97):
-        left = np.append(left, (1.0 - share) * left[-1])
-    assert tried[:6] == pytest.approx([1e-5, 4e-6, 1.6e-6, *(np.array([0.3104, 0.6208, 0.97]) * left[:3])], rel=1e-6)
+def test_failed_steps_are_repeated_with_a_shorter_length():
+    """Steps of 1e-5 and 4e-6 are too long. The next ones are a smaller share of the predicted length."""
+    _, left = approach(2e-6, 1e-3)
+    assert left[0] == pytest.approx(0.4e-6, rel=1e-6)
+    assert left[1:4] / left[:3] == pytest.approx(1.0 - np.array([0.3104, 0.6208, 0.97]), rel=1e-4)
 
 
-@pytest.mark.parametrize(("length", "count"), [(1e-3, 13), (1.0, 15)])
-def test_the_approach_to_a_corner_ends_if_steps_fail(approach, length, count):
-    """The approach ends if steps become shorter than 1e-10, or after fifteen failures."""
-    way, tried = approach(length, lambda tried: True)
-    assert way == []
-    assert tried == pytest.approx([0.01 * length * 0.4**k for k in range(count)], rel=1e-9, abs=0.0)
+def test_the_approach_to_a_corner_ends_if_steps_fail():
+    """There is no law ahead."""
+    assert approach(8e-4, 1e-3, exists=lambda mu: mu <= -8e-4 / PER_MU + 1e-12)[0] == []
 
 
-def test_the_approach_to_a_corner_ends_if_it_comes_no_closer(approach):
+def test_the_approach_to_a_corner_ends_if_it_comes_no_closer():
     """A distance that falls like a fourth power predicts a quarter of the remaining length."""
-    way, tried = approach(1e-3, power=4)
-    assert len(tried) == len(way) == 32
-    assert not [point for point in way if point.distance_to_grazing > 0.0]
+    steps, _ = approach(8e-4, 1e-3, borders=lambda x, mu: np.array([x[0] ** 3 * abs(x[0]), np.inf]))
+    assert len(steps) == 32
+    assert not any(point.is_grazing for point in steps)
 
 
-def test_no_corner_is_searched_for_beyond_the_given_length(approach):
-    way, tried = approach(1e-3, corner=1.0)
-    assert tried == pytest.approx([1e-5, 1e-3])
-    assert [point.orbit for point in way] == pytest.approx([1e-5, 1.01e-3])
-
-
-def test_the_approach_to_a_corner_ends_where_the_branch_joins_another_one(approach):
-    way, tried = approach(1e-3, joint=5e-4)
-    assert [point.reduced_orbit for point in way] == [None, "simpler"]
-    assert len(tried) == 2
-
-
-@pytest.fixture
-def turn(monkeypatch):
-    """Return the orbit found beyond a corner if successive steps lead to orbits with these stops."""
-
-    def turned(signatures, drops=False, simple=(), lost=(), here=(1, 2)):
-        tried, tangents, left = [], [], iter(signatures)
-
-        def orbit_of(model, state, time, symmetry):
-            tangents.append((model, *state.position))
-            if len(tangents) in lost:
-                raise OrbitError("none")
-            return len(tangents)
-
-        def step(point, length, tangent):
-            tried.append((length, *tangent))
-            stop_counts = next(left)
-            if stop_counts is None:
-                raise OrbitError("none")
-            return SimpleNamespace(orbit=SimpleNamespace(stop_counts=stop_counts))
-
-        monkeypatch.setattr(border_collision, "has_friction_drop", lambda model: drops)
-        monkeypatch.setattr(border_collision, "orbit_of", orbit_of)
-        monkeypatch.setattr(border_collision, "tangent_of", lambda number, line: np.array([number, 0.0]))
-        monkeypatch.setattr(border_collision, "step_along", step)
-        monkeypatch.setattr(
-            border_collision, "reduced_orbit", lambda orbit: "one" if orbit.stop_counts in simple else None
-        )
-        reference = ChainState(np.array([0.5, 0.25]), np.zeros(2), np.zeros(2, dtype=bool))
-        attributes = {"model": SimpleNamespace(blocks=2), "return_time": 1.0, "symmetry": None}
-        orbit = SimpleNamespace(reference=reference, stop_counts=here, **attributes)
-        line = SimpleNamespace(
-            coordinate=lambda model: 2e-6, model=lambda model, a: a, lower_bound=0.0, units=OwnUnits()
-        )
-        point = SimpleNamespace(orbit=orbit, line=line, tangent=np.array([4.0, -2.0, 0.0, 0.0, 0.0, -1.0]))
-        orbit_beyond = border_collision.switch_branch(point)
-        return orbit_beyond and orbit_beyond.orbit.stop_counts, tried, tangents
-
-    return turned
-
-
-def test_beyond_a_corner_the_orbit_has_other_stops(turn):
-    """The orbit may lie on either side; it must have stops that differ from before and not repeat a simpler orbit."""
-    none, same, twice = (0, 0), (1, 2), (2, 2)
-    stops, tried, tangents = turn([None, same, none, twice, (1, 1)], simple=(twice,))
-    assert stops == (1, 1)
-    assert tried == [(1e-5, 1, 0), (1e-5, -1, 0), (1e-4, 1, 0), (1e-4, -1, 0), (1e-6, 1, 0)]
-    # The tangent is that of an orbit slightly farther on, at an a that is not negative.
-    assert tangents == [(0.0, pytest.approx(0.50001), pytest.approx(0.249995))]
-    assert turn([], drops=True) == (None, [], [])
-    assert turn([(1, 1)])[0] == (1, 1)
-
-
-@pytest.mark.parametrize(
-    ("beyond", "continues"),
-    [((3, 2, 3), True), ((2, 2, 2), True), ((3, 2, 2), False), ((2, 2, 3), False), ((0, 0, 0), False)],
-)
-def test_which_branches_continue_from_a_symmetric_corner(turn, beyond, continues):
-    """A branch with its own stops or none does not continue: less symmetric orbits begin at such a corner."""
-    assert turn([beyond] * 24, here=(2, 2, 3))[0] == (beyond if continues else None)
-
-
-def test_a_branch_whose_other_side_is_not_found_ends(turn):
-    stops, tried, tangents = turn([None] * 24)
-    assert stops is None
-    assert tried == [
-        (length, sign * k, 0) for k in (1, 2, 3) for length in (1e-5, 1e-4, 1e-6, 1e-7) for sign in (1, -1)
-    ]
-    assert [position for _, position, _ in tangents] == pytest.approx([0.50001, 0.5001, 0.500001], abs=1e-12)
-    assert [a for a, *_ in tangents] == pytest.approx([0.0, 0.0, 1e-6], abs=1e-12)
-    stops, tried, _ = turn([(1, 1)], lost=(1, 2))
-    assert (stops, tried) == ((1, 1), [(1e-5, 3, 0)])
+def test_no_corner_is_searched_for_beyond_the_given_length():
+    steps, _ = approach(5e-2, 1e-3)
+    assert [point.length for point in steps] == pytest.approx([1e-5, 1e-3])

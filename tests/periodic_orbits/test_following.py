@@ -1,8 +1,5 @@
 """How a branch continues, joins or passes a branch of simpler orbits, and where it ends."""
 
-from dataclasses import dataclass
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
@@ -11,32 +8,29 @@ from burridge_knopoff.periodic_orbits import following
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import locate_bifurcations
 from burridge_knopoff.periodic_orbits.following import ContinuationSettings
-from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
-from tests.periodic_orbits.stand_in import only, stand_in
+from burridge_knopoff.periodic_orbits.parameter_line import line_along_a
+from burridge_knopoff.periodic_orbits.pseudo_arclength import begin_branch
+from tests.normal_forms import CRITICAL, border_collision, fold, on_line, orbit_at, pitchfork
+
+LINE = line_along_a(Chain(2))
 
 
-@pytest.mark.parametrize(
-    ("slopes", "values", "away", "touches"),
-    [
-        ((1.0, -1.0), (0.5, 0.5), 0.0, True),
-        ((-0.1, 0.1), (-0.5, -0.5), 0.0, True),
-        # The branch continues; it has a fold; there is no simpler orbit.
-        ((1.0, 1.0), (0.5, 0.5), 0.0, False),
-        ((1.0, -1.0), (0.5, -0.5), 0.0, False),
-        ((1.0, -1.0), (0.5, 0.5), np.inf, False),
-        # The distance tolerance is 0.03; the distance in a is of the order of its square.
-        ((1.0, -1.0), (0.5, 0.5), 0.029, True),
-        ((1.0, -1.0), (0.5, 0.5), 0.031, False),
-    ],
-)
-def test_a_branch_turns_back_without_a_fold_at_a_simpler_orbit(monkeypatch, slopes, values, away, touches):
-    monkeypatch.setattr(following, "minimal_form", lambda orbit, tolerance: "simpler" if away <= tolerance else orbit)
-    orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC)
-    points = [
-        SimpleNamespace(orbit=orbit, tangent=[slope], multipliers=only(1.0 + value))
-        for slope, value in zip(slopes, values, strict=True)
-    ]
-    assert following._passed_orbit(*points) == ("simpler" if touches else None)
+@pytest.mark.parametrize(("d", "touches"), [(0.0145, True), (0.0155, False)])
+def test_a_branch_turns_back_without_a_fold_at_a_simpler_orbit(d, touches):
+    """It is recognized within a distance 2d of 0.03; the distance in a is of the order of its square."""
+    first, second = (
+        begin_branch(orbit_at(pitchfork(1.0), d**2, [side * d, -side * d], chain=Chain(2)), side < 0.0, LINE)
+        for side in (1.0, -1.0)
+    )
+    passed = following._passed_orbit(first, second)
+    assert (passed and passed.symmetry) == (Symmetry.SYNCHRONIZED if touches else None)
+    # The branch continues on the same side.
+    assert following._passed_orbit(first, first) is None
+
+
+def test_a_branch_turns_back_at_a_fold():
+    first, second = (begin_branch(orbit_at(fold(), 1e-4, x), x < 0.0, LINE) for x in (1e-2, -1e-2))
+    assert following._passed_orbit(first, second) is None
 
 
 def test_repetitions_of_another_orbit_do_not_continue_a_branch():
@@ -98,107 +92,71 @@ def test_a_branch_must_begin_within_its_interval():
 SLOW = Model(Chain(3), law_of("linearized", 0.08))
 
 
-@dataclass(frozen=True)
-class Step:
-    """The result of a step along a branch in a."""
-
-    orbit: SimpleNamespace
-    length: float = 0.0
-    is_grazing: bool = False
-    reduced_orbit: str | None = None
-    tangent: tuple[float, ...] = (1.0,)
-
-    @property
-    def value(self):
-        return self.orbit.a
+def linear_orbit(**fields):
+    """Return the orbit x = 2μ of x → x/2 + μ at μ = −0.01."""
+    form = on_line(lambda x, mu: 0.5 * x + mu, lambda x, mu: 0.5, **fields)
+    return orbit_at(form, -0.01, -0.02)
 
 
-def a_step(a, length=0.0, **fields):
-    return Step(SimpleNamespace(a=a), length, **fields)
+def lengths_of(branch):
+    return [point.length for point in branch[1:]]
 
 
-@pytest.fixture
-def walk(monkeypatch):
-    """Return the points of a branch from a = 0.1, and the lengths of the attempted steps."""
-
-    def walked(smooth, corners, turned, **options):
-        lengths, smooth, corners, turned = [], iter(smooth), iter(corners), iter(turned)
-
-        def step(points, length):
-            lengths.append(length)
-            return next(smooth)
-
-        line = SimpleNamespace(value=lambda model: model.a)
-        monkeypatch.setattr(following, "line_of", lambda orbit, parameter: line)
-        monkeypatch.setattr(following, "reduced_orbit", lambda orbit: None)
-        monkeypatch.setattr(following, "begin_branch", lambda orbit, upward, line: Step(orbit))
-        monkeypatch.setattr(following, "smooth_step", step)
-        monkeypatch.setattr(following, "approach_grazing", lambda points, length: next(corners))
-        monkeypatch.setattr(following, "switch_branch", lambda point: next(turned))
-        return follow(stand_in(PeriodicOrbit, model=SimpleNamespace(a=0.1)), (0.1, 0.2), **options), lengths
-
-    return walked
+def test_steps_become_longer_up_to_the_largest():
+    """From 1e-4 to 5e-4; the branch ends after 200 orbits."""
+    branch = follow(linear_orbit())
+    assert len(branch) == 200
+    assert lengths_of(branch) == pytest.approx([1e-4, 2e-4, 4e-4, *[5e-4] * 196])
 
 
-def test_after_a_corner_steps_start_again_with_the_first_length(walk):
-    corner = a_step(0.13, 1e-9, is_grazing=True)
-    smooth = [a_step(0.11), a_step(0.12), None, a_step(0.2), a_step(0.21)]
-    points, lengths = walk(smooth, [[a_step(0.125), corner]], [a_step(0.14)])
-    assert [point.orbit.a for point in points] == [0.1, 0.11, 0.12, 0.125, 0.13, 0.14, 0.2, 0.21]
-    assert lengths == pytest.approx([1e-4, 2e-4, 4e-4, 1e-4, 2e-4])
-    # There is no orbit beyond the last corner.
-    points, _ = walk(smooth[:3], [[corner]], [None])
-    assert points[-1] is not None
-    assert points[-1].is_grazing
+def test_steps_become_shorter_up_to_the_end_of_a_branch():
+    """The law exists up to μ = −0.008; the branch is given up where steps are shorter than the smallest one."""
+    branch = follow(linear_orbit(exists=lambda mu: mu <= -0.008))
+    assert 0.0 <= CRITICAL - 0.008 - branch[-1].value < 1e-8
+    assert not branch[-1].is_grazing
+    assert branch[-1].length < 1e-7
 
 
-def test_after_an_approach_without_a_corner_the_next_step_is_as_long_as_the_last(walk):
-    """Otherwise the next step is a tenth of the length that was too long."""
-    points, lengths = walk([None, None, a_step(0.21)], [[a_step(0.11, 3e-5)], [a_step(0.12, 1e-9)]], [])
-    assert lengths == pytest.approx([1e-4, 3e-5, 3e-6])
-    assert [point.orbit.a for point in points] == [0.1, 0.11, 0.12, 0.21]
+def test_after_a_corner_steps_start_again_with_the_first_length():
+    branch = follow(orbit_at(border_collision(0.5, -0.4), -0.001, -0.002), (0.09, 0.103))
+    (corner,) = (k for k, point in enumerate(branch) if point.is_grazing)
+    assert branch[corner].value == pytest.approx(CRITICAL, abs=1e-10)
+    assert branch[corner + 1].value > CRITICAL
+    assert lengths_of(branch[corner + 1 :])[:4] == pytest.approx([1e-4, 2e-4, 4e-4, 5e-4])
 
 
-def test_a_branch_ends_where_it_joins_another_one(walk):
-    points, _ = walk([a_step(0.11), a_step(0.12, reduced_orbit="simpler")], [], [])
-    assert [point.reduced_orbit for point in points] == [None, None, "simpler"]
-    points, _ = walk([None], [[a_step(0.11), a_step(0.12, reduced_orbit="simpler"), a_step(0.13)]], [])
-    assert [point.reduced_orbit for point in points] == [None, None, "simpler"]
-
-
-def test_a_branch_ends_where_it_has_passed_another_one(walk, monkeypatch):
-    monkeypatch.setattr(following, "_passed_orbit", lambda first, second: "passed" if second.orbit.a == 0.12 else None)
-    points, _ = walk([a_step(0.11), a_step(0.12)], [], [])
-    assert [point.reduced_orbit for point in points] == [None, None, "passed"]
-
-
-def test_a_branch_ends_when_it_is_complete(walk):
+def test_a_branch_ends_when_it_is_complete():
     counts = []
 
     def enough(points):
         counts.append(len(points))
         return len(points) == 3
 
-    assert len(walk([a_step(0.11), a_step(0.12)], [], [], is_complete=enough)[0]) == 3
+    assert len(follow(linear_orbit(), is_complete=enough)) == 3
     assert counts == [1, 2, 3]
     # This also applies to the approach to a corner.
     counts.clear()
-    assert len(walk([None], [[a_step(0.11), a_step(0.12), a_step(0.13)]], [], is_complete=enough)[0]) == 3
+    near = orbit_at(border_collision(0.5, -0.4), -1e-5, -2e-5)
+    assert len(follow(near, is_complete=enough)) == 3
     assert counts == [1, 2, 3]
 
 
-@pytest.mark.parametrize(("most", "count"), [(2, 2), (3, 3), (4, 5), (5, 5), (6, 6)])
-def test_a_branch_has_at_most_the_requested_number_of_orbits(walk, most, count):
+@pytest.mark.parametrize("most", range(1, 14))
+def test_a_branch_has_at_most_the_requested_number_of_orbits(most):
     """It does not end at a corner, since the other side would be missing."""
-    way = [a_step(0.11), a_step(0.12), a_step(0.13, 1e-9, is_grazing=True)]
-    settings = ContinuationSettings(max_orbits=most)
-    points, _ = walk([None, a_step(0.15), a_step(0.21)], [way], [a_step(0.14)], settings=settings)
-    assert [point.orbit.a for point in points] == [0.1, 0.11, 0.12, 0.13, 0.14, 0.15, 0.21][:count]
+    orbit = orbit_at(border_collision(0.5, -0.4), -1e-5, -2e-5)
+    (corner,) = (k for k, point in enumerate(follow(orbit, (0.09, 0.101))) if point.is_grazing)
+    assert 2 < corner < 12
+    branch = follow(orbit, settings=ContinuationSettings(max_orbits=most))
+    assert len(branch) == most + (most == corner + 1)
+    assert not branch[-1].is_grazing
 
 
-def test_at_most_one_orbit_beyond_the_range_is_kept(walk):
-    points, _ = walk([None], [[a_step(0.11), a_step(0.21), a_step(0.22)]], [])
-    assert [point.orbit.a for point in points] == [0.1, 0.11, 0.21]
+@pytest.mark.parametrize("high", [CRITICAL - 1e-6, CRITICAL + 1e-3])
+def test_at_most_one_orbit_beyond_the_range_is_kept(high):
+    """The range may end within the approach to a corner."""
+    branch = follow(orbit_at(border_collision(0.5, -0.4), -0.001, -0.002), (0.09, high))
+    assert [point.value > high for point in branch] == [False] * (len(branch) - 1) + [True]
 
 
 @pytest.mark.parametrize("steps", [(1e6, 1e6, 1e6), (1e6, 1e6, 1e-300), (5e-324, 1e6, 5e-324)], ids=str)

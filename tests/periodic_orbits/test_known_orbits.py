@@ -9,6 +9,7 @@ from burridge_knopoff import Chain, InitialState, Model, law_of, limit_cycle, sy
 from burridge_knopoff.periodic_orbits import known_orbits as orbits_over_a
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits, nearby_orbit
+from tests.normal_forms import CRITICAL, on_line, orbit_at
 
 
 @pytest.fixture
@@ -24,22 +25,17 @@ def asymmetric():
     return limit_cycle(model, start, settling=10_000.0)
 
 
-def test_steps_are_halved_until_the_orbit_is_found(branch, monkeypatch):
-    (a_start,) = branch.orbits
-    tried = []
+def distant(slope, a):
+    """Return orbits x = slope·a, at one a; Newton's method corrects x by less than 0.5."""
+    form = on_line(lambda x, mu: 0.9 * x + 0.1 * slope * (mu + CRITICAL), lambda x, mu: 0.9)
+    return KnownOrbits(orbit_at(form, a - CRITICAL, slope * a))
 
-    def near_only(orbit, a):
-        tried.append(a)
-        if a - max(branch.orbits) > 0.003:
-            raise OrbitError("too far")
-        return nearby_orbit(orbit, a)
 
-    monkeypatch.setattr(orbits_over_a, "nearby_orbit", near_only)
-    continued = branch.at(a_start + 0.02)
-    assert continued.model.a == a_start + 0.02
-    assert tried[:3] == pytest.approx([a_start + 0.02, a_start + 0.01, a_start + 0.005])
-    # The successful step length is kept.
-    assert len(tried) == pytest.approx(3 + 0.02 / 0.0025, abs=1)
+def test_steps_are_halved_until_the_orbit_is_found():
+    """From 0.02 to 0.0025, which is kept."""
+    orbits = distant(150.0, 0.05)
+    assert orbits.at(0.07).model.a == 0.07
+    assert sorted(orbits.orbits) == pytest.approx(np.arange(0.05, 0.0701, 0.0025))
 
 
 def test_a_lost_orbit_is_an_error_after_the_smallest_step(asymmetric):
@@ -58,17 +54,9 @@ def test_a_lost_orbit_is_an_error_after_the_smallest_step(asymmetric):
     assert 1.0 <= (tried - values[-1]) / orbits_over_a.SMALLEST_STEP < 2.0
 
 
-def test_steps_become_as_short_as_the_stick(branch, monkeypatch):
-    """The stick vanishes with a, and with it the range of convergence of Newton's method."""
-    branch.orbits = {1e-4: branch.at(1e-4)}
-
-    def near_only(orbit, a):
-        if min(abs(a - other) for other in branch.orbits) > 3e-7:
-            raise OrbitError("too far")
-        return nearby_orbit(orbit, a)
-
-    monkeypatch.setattr(orbits_over_a, "nearby_orbit", near_only)
-    assert branch.at(0.99e-4).model.a == 0.99e-4
+def test_steps_become_shorter_near_0():
+    """There a stick may vanish with a, and with it the range of convergence of Newton's method."""
+    assert distant(1.5e6, 1e-4).at(0.99e-4).model.a == 0.99e-4
 
 
 def test_an_orbit_of_another_period_is_not_on_the_branch(branch):

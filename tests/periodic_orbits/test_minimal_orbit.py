@@ -1,52 +1,32 @@
 """Reduction of orbits to forms of more symmetry or of a shorter period."""
 
-from types import SimpleNamespace
-
-import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, Model, Symmetry, law_of
-from burridge_knopoff.periodic_orbits import minimal_orbit
+from burridge_knopoff import Chain, Symmetry
 from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form
-
-STILL = np.zeros(2, dtype=bool)
-#: This chain is not its own mirror image.
-UNEQUAL = Chain(2, threshold=(1.0, 1.1))
+from tests.normal_forms import orbit_at, period_doubling, pitchfork
 
 
-@pytest.mark.parametrize(
-    ("away", "scale", "time", "stops", "is_repeat"),
-    [
-        (0.9e-4, 1.0, 1.0, (1, 2), True),
-        (1.1e-4, 1.0, 1.0, (1, 2), False),
-        # Distances grow with v.
-        (9e-4, 10.0, 1.0, (1, 2), True),
-        (0.9e-4, 0.1, 1.0, (1, 2), False),
-        # Newton's method has converged to another orbit.
-        (0.0, 1.0, 1.04, (1, 2), True),
-        (0.0, 1.0, 1.06, (1, 2), False),
-        (0.0, 1.0, 0.94, (1, 2), False),
-        (0.0, 1.0, 1.0, (2, 1), False),
-        (0.0, 1.0, 1.0, (2, 4), False),
-    ],
-)
-def test_a_repetition_of_a_simpler_orbit_is_recognized_by_place_stops_and_period(
-    monkeypatch, away, scale, time, stops, is_repeat
-):
-    model = Model(UNEQUAL, law_of("linearized", 0.05), 0.1 * scale)
-    reference, end = (ChainState(np.array([0.3, x]), np.full(2, 0.1), STILL) for x in (0.2, 0.2 + away))
+@pytest.mark.parametrize(("v", "largest"), [(0.1, 0.1), (1.0, 0.01)])
+def test_a_doubled_orbit_reduces_to_the_single_one_within_a_tolerance(v, largest):
+    """Half a period later ±√μ is 2√μ = 0.1 away; tolerances are for v = 0.1."""
+    orbit = orbit_at(period_doubling(1.0), 0.0025, 0.05, time=2, v=v)
+    assert minimal_form(orbit, 0.99 * largest) is orbit
+    single = minimal_form(orbit, 1.01 * largest)
+    assert single.period == pytest.approx(1.0)
+    assert abs(single.reference.position[0]) < 1e-10
 
-    def an_orbit(time, stops):
-        return SimpleNamespace(
-            model=model,
-            reference=reference,
-            symmetry=Symmetry.ASYMMETRIC,
-            period=time,
-            return_time=time,
-            stop_counts=stops,
-        )
 
-    orbit, single = an_orbit(2.0, (2, 4)), an_orbit(time, stops)
-    monkeypatch.setattr(minimal_orbit, "ReturnMap", lambda *_: SimpleNamespace(end=lambda start, after: end))
-    monkeypatch.setattr(minimal_orbit, "find_periodic_orbit", lambda *_: single)
-    assert minimal_form(orbit, 1e-4) is (single if is_repeat else orbit)
+def test_an_asymmetric_orbit_reduces_to_the_synchronized_one_within_a_tolerance():
+    """Its mirror image is 2√μ = 0.1 away."""
+    orbit = orbit_at(pitchfork(1.0), 0.0025, [0.05, -0.05], chain=Chain(2))
+    assert minimal_form(orbit, 0.099) is orbit
+    assert minimal_form(orbit, 0.101).symmetry == Symmetry.SYNCHRONIZED
+
+
+def test_an_orbit_found_with_a_multiple_of_its_period_reduces_to_it():
+    """A stop-by-stop repetition has all stops a multiple of times."""
+    orbit = orbit_at(period_doubling(1.0), 0.0025, 0.05, time=6)
+    assert orbit.stop_counts == (6, 6)
+    reduced = minimal_form(orbit, 1e-8)
+    assert (reduced.period, reduced.stop_counts) == (pytest.approx(2.0), (2, 2))

@@ -1,17 +1,15 @@
-"""Derivatives of returns with respect to a, near the end of the range of a law."""
-
-from types import SimpleNamespace
+"""Derivatives of returns with respect to a: near the end of the range of a law, and where stops change."""
 
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, FormulaLaw, Model, law_of
+from burridge_knopoff import Chain, ChainState, FormulaLaw, Model
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.periodic_orbits import return_map
 from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at
 from burridge_knopoff.periodic_orbits.parameter_line import line_along_a
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from tests.normal_forms import CRITICAL, TWO, MapModel, NormalForm, on_line
 
 #: The friction at the start of a slip is a, which must not exceed 1.
 LAW = FormulaLaw(1.0, "a/(1 + 0.08*u)", name="own")
@@ -34,33 +32,48 @@ def test_there_is_no_orbit_outside_the_range_of_a_law():
         model_at(Model(Chain(3), LAW), 1.001)
 
 
-def test_the_derivative_by_a_is_that_of_the_same_events_of_each_block(monkeypatch):
-    model = Model(Chain(3), law_of("linearized", 0.1))
-    end = ChainState(np.zeros(3), np.zeros(3), np.zeros(3, dtype=bool))
-    runs = [
-        (1e-7, [(0.1, 0, 1), (0.2, 0, 0), (0.3, 1, 0)]),  # one event more
-        (1e-7, [(0.1, 0, 0)]),
-        (1e-8, [(0.1, 0, 1), (0.2, 1, 0)]),  # of another kind
-        (1e-8, [(0.3, 1, 0), (0.4, 0, 0)]),  # of two blocks, in another order
-    ]
-    left = iter(runs)
-
-    def ran(events, after):
-        """Return a stand-in for a runner that has ended with these events."""
-        columns = tuple(np.array(events).reshape(-1, 3).T)
-        return SimpleNamespace(events=lambda: columns, state_after=lambda start, time: after)
-
-    def runner(model, keep_events):
-        size, events = next(left)
-        assert abs(model.a - 0.1) == pytest.approx(size)
-        return ran(events, ChainState(np.full(3, -3e-8), np.zeros(3), end.stuck))
-
-    monkeypatch.setattr(return_map, "Runner", runner)
+def derivative_at(mu, form):
+    """Return the derivative of x_1 after an iteration by a, at CRITICAL + μ."""
+    model = MapModel(TWO, form.at(CRITICAL + mu))
+    start = ChainState(np.zeros(2), np.full(2, 0.5), np.zeros(2, dtype=bool))
     mapping = ReturnMap(model, Symmetry.ASYMMETRIC)
-    derivative = mapping.parameter_derivative(end, 1.0, end, np.array([[0, 0], [1, 0]]), line_along_a(model.chain))
-    # The last run is at an a smaller by 1e-8.
-    assert derivative == pytest.approx([3.0, 3.0, 3.0, 0.0, 0.0, 0.0])
-    monkeypatch.setattr(return_map, "Runner", lambda model, keep_events: ran([], end))
-    assert (
-        mapping.parameter_derivative(end, 1.0, end, np.zeros((0, 2)), line_along_a(model.chain)).tolist() == [0.0] * 6
+    end = mapping.end(start, 1.0)
+    return mapping.parameter_derivative(start, 1.0, end, mapping.event_rows()[:, 1:], line_along_a(TWO))[0]
+
+
+def kinked(borders):
+    """Return the map x_1 → 2μ, or −3μ for μ < 0."""
+    return on_line(lambda x, mu: 2.0 * mu if mu > 0.0 else -3.0 * mu, lambda x, mu: 0.0, borders=borders)
+
+
+@pytest.mark.parametrize(("mu", "expected"), [(5e-8, 2.0), (5e-9, 2.0), (-5e-8, -3.0), (-5e-9, -3.0)])
+def test_the_derivative_by_a_is_that_of_the_same_events(mu, expected):
+    """Beyond μ = 0, which is within the step of the finite difference, there is another stop."""
+    form = kinked(lambda x, mu: np.array([1.0, mu]))
+    assert derivative_at(mu, form) == pytest.approx(expected, rel=1e-6)
+
+
+def test_the_derivative_by_a_is_that_of_the_same_events_of_each_block():
+    """Their order among blocks may change."""
+
+    class Reordered(NormalForm):
+        def stops(self, x):
+            return [0, 1] if self.mu > -5e-8 else [1, 0]
+
+    form = Reordered(lambda x, mu: np.array([2.0 * mu, 0.0]), lambda x, mu: np.zeros((2, 2)))
+    assert derivative_at(-5e-8 - 1e-12, form) == pytest.approx(2.0, rel=1e-6)
+
+
+@pytest.mark.parametrize("width", [5e-8, 1e-14])
+def test_the_step_of_the_derivative_by_a_becomes_as_short_as_the_range_of_the_events(width):
+    """A block stops for |μ| < width only, where the slope is 1; a step below 1e-13 is not tried."""
+    form = on_line(
+        lambda x, mu: mu if abs(mu) < width else 9.0 * mu,
+        lambda x, mu: 0.0,
+        borders=lambda x, mu: np.array([1.0, width - abs(mu)]),
     )
+    if width > 1e-13:
+        assert derivative_at(0.0, form) == pytest.approx(1.0, rel=1e-6)
+    else:
+        with pytest.raises(OrbitError, match=r"^a = 0\.1: stops and starts change"):
+            derivative_at(0.0, form)

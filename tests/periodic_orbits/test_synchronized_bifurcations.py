@@ -1,14 +1,12 @@
 """Loss of synchrony, grazing and period doubling, compared with independent computations."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from burridge_knopoff import BifurcationKind, Chain, Model, OrbitError, law_of, multipliers
+from burridge_knopoff import BifurcationKind, Chain, Model, Symmetry, law_of, multipliers
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
-from burridge_knopoff.periodic_orbits import synchronized_bifurcations
 from burridge_knopoff.periodic_orbits.flow import flow
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
 from burridge_knopoff.periodic_orbits.pitchfork import displace_end_blocks
@@ -21,6 +19,7 @@ from burridge_knopoff.periodic_orbits.synchronized_bifurcations import (
     symmetric_period_doubling_a,
 )
 from burridge_knopoff.study.paper import PAPER_LAWS
+from tests.normal_forms import CRITICAL, NormalForm, antisymmetric, orbit_at
 from tests.periodic_orbits.exact import after_a_period, exact_transverse_multiplier, slipping_state
 
 
@@ -91,26 +90,35 @@ def test_grazing_next_to_an_orbit_that_is_not_found():
 
 
 @pytest.mark.parametrize("lost", [(0.0, 0.03), (0.05, 0.06), (0.2, 1.0)])
-def test_bifurcations_around_a_gap_of_the_orbit_are_found(families, critical, monkeypatch, lost):
-    """The branch may be interrupted below, above, or on both sides."""
+def test_bifurcations_around_a_gap_of_the_orbit_are_found(lost):
+    """The branch may be interrupted below, above, or on both sides of a bifurcation.
 
-    class Partly(KnownOrbits):
-        def at(self, a):
-            if lost[0] <= a <= lost[1]:
-                raise OrbitError("lost")
-            return families["linearized"].at(a)
+    The middle block of the map begins to stick at a = 0.035, and the end blocks lose synchrony at a = 0.1.
+    """
 
-    follow = synchronized_bifurcations.follow
+    def map(x, mu):
+        d = 0.5 * (x[0] - x[2])
+        return np.array([1.0, 0.0, -1.0]) * ((1.0 + mu) * d - d**3) + np.array([0.0, 0.5 * x[1] + mu + 0.065, 0.0])
 
-    def broken_off(orbit, a_range, settings, upward=True):
-        low, high = a_range
-        low, high = (low, min(high, lost[0])) if orbit.a < lost[0] else (max(low, lost[1]), high)
-        return follow(orbit, (low, high), settings, upward=upward)
+    def derivative(x, mu):
+        slope = 1.0 + mu - 0.75 * (x[0] - x[2]) ** 2
+        return np.array([[0.5 * slope, 0.0, -0.5 * slope], [0.0, 0.5, 0.0], [-0.5 * slope, 0.0, 0.5 * slope]])
 
-    monkeypatch.setattr(synchronized_bifurcations, "follow", broken_off)
-    located = bifurcations_of(Partly(families["linearized"].at(0.08)))
-    assert critical_a(located) == pytest.approx(critical["linearized"], abs=1e-14)
-    assert np.isfinite(grazing_a(located, block=1))
+    form = NormalForm(
+        map,
+        derivative,
+        borders=lambda x, mu: np.array([1.0, x[1], 1.0]),
+        exists=lambda mu: not lost[0] <= mu + CRITICAL <= lost[1],
+    )
+    orbits = KnownOrbits(orbit_at(form, -0.02, 0.0, Symmetry.SYNCHRONIZED, Chain(3)))
+    # An orbit on the other side of the gap.
+    below = orbit_at(form, -0.06, 0.0, Symmetry.SYNCHRONIZED, Chain(3))
+    orbits.orbits[below.a] = below
+    located = bifurcations_of(orbits)
+    assert [bifurcation.kind for bifurcation in located] == [BifurcationKind.GRAZING, BifurcationKind.PITCHFORK]
+    assert critical_a(located) == pytest.approx(CRITICAL, abs=1e-14)
+    assert grazing_a(located, block=1) == pytest.approx(0.035, abs=1e-14)
+    assert np.isnan(grazing_a(located, block=0))
 
 
 @pytest.mark.parametrize("a", [0.02, 0.09, 0.2])
@@ -172,11 +180,8 @@ def test_five_blocks_desynchronize_where_the_leading_multiplier_is_1():
     assert [abs(multipliers(orbits.at(a + side)).transverse) > 1.0 for side in (-1e-6, 1e-6)] == [False, True]
 
 
-def test_the_error_of_critical_a_follows_from_the_error_of_the_multiplier(monkeypatch, families):
+def test_the_error_of_critical_a_follows_from_the_error_of_the_multiplier():
     """A multiplier with slope 5 that is too small by 0.01 reaches 1 at an a larger by 0.002."""
-    monkeypatch.setattr(
-        synchronized_bifurcations, "multipliers", lambda a: SimpleNamespace(transverse=1.0 + 5.0 * (a - 0.2))
-    )
-    monkeypatch.setattr(synchronized_bifurcations, "finite_difference_multiplier", lambda a: 0.99 + 5.0 * (a - 0.2))
-    orbits = SimpleNamespace(model=families["linearized"].model, at=lambda a: a)
-    assert critical_a_error(orbits, 0.2) == pytest.approx(0.002, rel=1e-9)
+    form = antisymmetric(lambda d, mu: (0.99 + 5.0 * mu) * d, lambda d, mu: 1.0 + 5.0 * mu)
+    orbits = KnownOrbits(orbit_at(form, -0.01, 0.0, Symmetry.SYNCHRONIZED, Chain(2)))
+    assert critical_a_error(orbits, CRITICAL) == pytest.approx(0.002, rel=1e-9)

@@ -107,7 +107,7 @@ class Capture:
             result.append(replace(attractor, radius=radius, patience=LONGEST_PATIENCE if within[index] else 0.0))
         return result
 
-    def radius(
+    def find_radius(
         self,
         model: Model,
         attractors: Sequence[Attractor],
@@ -120,27 +120,42 @@ class Capture:
 
         least : smallest radius that is tried, for v = 0.1; the result is 0 if perturbations leave from it
         """
-        motion = attractors[index].motion
-        radius = attractors[index].radius
         inner = embedded_orbits(attractors, index, tolerance)
         generator = np.random.default_rng(settings.seed)
+        radius = attractors[index].radius
         while radius >= least * model.scale:
-            close = self.recovery_distance(motion, radius)
-            narrow = [replace(item, radius=min(item.radius, close)) for item in attractors]
-            if inner:
-                narrow[index] = replace(narrow[index], patience=0.0)
-            # Most radii that are too large are refused by the first few trajectories.
-            for count in filter(None, (PERTURBATION_GROUP, settings.perturbations - PERTURBATION_GROUP)):
-                chosen = generator.integers(len(motion.returns), size=count)
-                starts = [perturb(state_of(motion.returns[k]), radius, generator) for k in chosen]
-                if close >= radius:
-                    # The returns are too far apart to show that a trajectory comes closer. It has to be on the
-                    # attractor after a longer time instead.
-                    starts = advance(model, starts, SLOW_TIME * settings.transient)
-                reached, _ = label(model, narrow, starts, settings.time_limit)
-                if not np.isin(reached, [index, *inner]).all():
-                    break
-            else:
+            if self._captures(model, attractors, index, inner, radius, settings, generator):
                 return radius
             radius /= self.shrinking
         return 0.0
+
+    def _captures(
+        self,
+        model: Model,
+        attractors: Sequence[Attractor],
+        index: int,
+        inner: Sequence[int],
+        radius: float,
+        settings: SearchSettings,
+        generator: np.random.Generator,
+    ) -> bool:
+        """Return whether random perturbations of a radius all come back to an attractor, or to an orbit in it.
+
+        inner : indices of the periodic orbits embedded in the attractor
+        """
+        motion, distance = attractors[index].motion, self.recovery_distance(attractors[index].motion, radius)
+        narrow = [replace(item, radius=min(item.radius, distance)) for item in attractors]
+        if inner:
+            narrow[index] = replace(narrow[index], patience=0.0)
+        # Most radii that are too large are refused by the first few trajectories.
+        for count in filter(None, (PERTURBATION_GROUP, settings.perturbations - PERTURBATION_GROUP)):
+            chosen = generator.integers(len(motion.returns), size=count)
+            starts = [perturb(state_of(motion.returns[k]), radius, generator) for k in chosen]
+            if distance >= radius:
+                # The returns are too far apart to show that a trajectory comes closer. It has to be on the attractor
+                # after a longer time instead.
+                starts = advance(model, starts, SLOW_TIME * settings.transient)
+            reached, _ = label(model, narrow, starts, settings.time_limit)
+            if not np.isin(reached, [index, *inner]).all():
+                return False
+        return True

@@ -118,7 +118,22 @@ class Candidate:
 
 @dataclass(eq=False)
 class Search(Convergence):
-    """Finds the attractors of one model.
+    """Finds the attractors of one model, and which of them each state reaches.
+
+    1. Follow all states for a short time, then to the time limit. A state that an attractor captures is decided
+       (`_discover_all`).
+    2. Follow an undecided state until its motion has settled (`reach`). It may be on an attractor that is already
+       listed.
+    3. Otherwise measure the motion. The candidates are the motion itself and a slow set on which it lies
+       (`candidates`).
+    4. Add the first candidate that attracts: perturbations within a capture radius come back (`accept`). Return to
+       step 1 with the new attractor. If no candidate attracts, perturb the state off the motion and repeat step 2.
+    5. Label all states by the attractor that captures them (`known_labels`). Follow undecided states as in step 2, and
+       label all again if there is a new attractor.
+    6. Follow some of the labelled states until they are closer. If they settle elsewhere, add that attractor, halve the
+       capture radius and repeat step 5 (`_verify_labels`, `_verify_chaotic_labels`).
+
+    Calls of `labels` carry out steps 1 to 6 and keep the attractors for the next call.
 
     attractors : those found so far
     unsuccessful_states : states that were followed without finding a new attractor, as bytes
@@ -338,7 +353,9 @@ class Search(Convergence):
         # A slow set that contains a known attractor is not another one.
         if candidate.attractors[0].slow and embedded_orbits(attractors, index, self.tolerance):
             return None
-        radius = candidate.capture.radius(self.model, attractors, index, candidate.least, self.tolerance, self.settings)
+        radius = candidate.capture.find_radius(
+            self.model, attractors, index, candidate.least, self.tolerance, self.settings
+        )
         if radius == 0.0:
             return None
         return [*attractors[:index], *(replace(item, radius=radius) for item in attractors[index:])]

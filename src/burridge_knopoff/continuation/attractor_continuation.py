@@ -27,7 +27,7 @@ from burridge_knopoff.attractors.table import Row
 from burridge_knopoff.basins.fractions import fraction_labels
 from burridge_knopoff.continuation.branches import REMEMBERED, branches
 from burridge_knopoff.continuation.cached import CLASSES
-from burridge_knopoff.continuation.matching import Matcher, outlines
+from burridge_knopoff.continuation.matching import DistanceMatcher, Matcher, outlines
 from burridge_knopoff.continuation.refinement import refine_searches
 from burridge_knopoff.continuation.settings import REFINEMENT, RefinementSettings
 from burridge_knopoff.model.initial import InitialState
@@ -80,79 +80,57 @@ def continue_attractors(
     *,
     starts: Sequence[InitialState] = (),
     start: str = "moving",
+    matcher: Matcher | None = None,
     processes: int = 1,
     folder: str | Path | None = None,
 ) -> Continuation:
     """Find the attractors of all models, of ascending a, from initial states and from each other, and match them.
 
+    1. Search each a from initial states.
+    2. Seed: start each attractor at the neighbouring a where it has no unchanged match, downward, then upward.
+    3. Draw states for the basin fractions and label them. An attractor that only these states reach seeds the
+       neighbours as well. Repeat where a value of a gains an attractor.
+    4. Sweep: label a state on each attractor at the next and at the previous a.
+    5. Insert values of a between neighbours whose attractors differ; follow there only what changes.
+    6. Number the branches: match the attractors of all values of a, in ascending order.
+    7. Measure the lifetimes of chaos.
+
     settings, motion, starts, start : see `find_attractors`
     refine : how closely changes are located in a
+    matcher : decides which attractors at two values of a are the same; by default a `DistanceMatcher`
     processes, folder : number of processes, and the cache of their results; see `parallel_map`. The results do not
         depend on them
 
     Raises ValueError if an initial state does not fit the models.
     """
-    matcher = Matcher(models[0].scale, refine.longest_period)
+    matcher = matcher or DistanceMatcher(models[0].scale, refine.longest_period)
     with parallel_map(processes, folder, CLASSES) as pool:
         searches = [Search(model, settings, motion) for model in models]
-        from_states = partial(_search, starts=starts, start=start)
-        searches = pool("searched from initial states", from_states, searches, span=SEARCHED)
+        searches = pool(
+            "searched from initial states", partial(_search, starts=starts, start=start), searches, span=SEARCHED
+        )
         searches = _seed_neighbours(searches, pool, matcher, [True] * len(searches))
-        samples = [np.zeros(0, dtype=np.intc) for _ in searches]
-        gained = [True] * len(searches)
-        while any(gained):
-            counts = [len(search.attractors) for search in searches]
-            places = [k for k, gain in enumerate(gained) if gain]
-            outcome = fraction_labels([searches[k] for k in places], start, pool)
-            for k, search, labels in zip(places, *outcome, strict=True):
-                searches[k], samples[k] = search, labels
-            # Attractors to which only these states have led also seed the neighbours.
-            seeded = _seed_neighbours(
-                searches,
-                pool,
-                matcher,
-                [len(search.attractors) > count for search, count in zip(searches, counts, strict=True)],
-            )
-            gained = [_has_more_attractors(search, before) for search, before in zip(seeded, searches, strict=True)]
-            searches = [
-                search if gain else before for search, gain, before in zip(seeded, gained, searches, strict=True)
-            ]
+        searches, samples = _label_samples(searches, start, pool, matcher)
         # The sets of attractors are complete now; from here on they are only read.
-        upward = pool("swept upward", _attractors_at_neighbour, searches[:-1], searches[1:])
-        downward = pool("swept downward", _attractors_at_neighbour, searches[1:], searches[:-1])
-        whole = [searches[0]]
+        upward, downward = _sweep(searches, pool)
         inserted = refine_searches(searches, refine, matcher, pool, INSERTED)
-        for inner, grown in zip(inserted, searches[1:], strict=True):
-            whole += [*inner, grown]
-        attractors = [search.attractors for search in whole]
-        grid = [whole.index(search) for search in searches]
-        values = [search.model.a for search in whole]
-        width = max((other.a - one.a for one, other in pairwise(models)), default=0.0)
-        branch, side = branches(values, attractors, grid, REMEMBERED * width, matcher)
-        lives = _lifetimes_along_a(whole, branch, grid, pool)
-    # Nothing follows at the ends of the grid.
-    first, last = (np.full(len(search.attractors), UNDETERMINED) for search in (searches[0], searches[-1]))
-    return Continuation(
-        [search.model for search in whole],
-        grid,
-        attractors,
-        lives,
-        branch,
-        side,
-        [*upward, last],
-        [first, *downward],
-        samples,
-    )
+        all_searches = [searches[0]]
+        for inner, right in zip(inserted, searches[1:], strict=True):
+            all_searches += [*inner, right]
+        grid = [all_searches.index(search) for search in searches]
+        attractors = [search.attractors for search in all_searches]
+        widest = max((right.a - left.a for left, right in pairwise(models)), default=0.0)
+        a_values = [search.model.a for search in all_searches]
+        branch, side = branches(a_values, attractors, grid, REMEMBERED * widest, matcher)
+        lives = _lifetimes_along_a(all_searches, branch, grid, pool)
+    every_model = [search.model for search in all_searches]
+    return Continuation(every_model, grid, attractors, lives, branch, side, upward, downward, samples)
 
 
 def _search(search: Search, starts: Sequence[InitialState], start: str) -> Search:
     """Find attractors from initial states."""
     search.labels(search.starts(starts, start))
     return search
-
-
-def _has_more_attractors(search: Search, before: Search) -> bool:
-    return len(search.attractors) > len(before.attractors)
 
 
 def _seed_neighbours(
@@ -176,8 +154,8 @@ def _seed_neighbours(
         searches = [before[0]]
         for k, (source, target) in enumerate(pairwise(before)):
             # An attractor that has just been found at the source is continued as well.
-            gain = _has_more_attractors(searches[-1], source)
-            searches.append((_seeded_search(searches[-1], target, matcher) if gain else seeded.get(k)) or target)
+            is_changed = _has_more_attractors(searches[-1], source)
+            searches.append((_seeded_search(searches[-1], target, matcher) if is_changed else seeded.get(k)) or target)
         new = [flag or _has_more_attractors(*pair) for flag, *pair in zip(new, searches, before, strict=True)]
     return searches
 
@@ -192,6 +170,43 @@ def _seeded_search(source: Search, target: Search, matcher: Matcher) -> Search |
     target = replace(target, attractors=list(target.attractors), unsuccessful_states=())
     target.labels(target.seeds(item.attractor for item in lacking.values()), check=False)
     return target
+
+
+def _has_more_attractors(search: Search, before: Search) -> bool:
+    return len(search.attractors) > len(before.attractors)
+
+
+def _label_samples(
+    searches: Sequence[Search], start: str, pool: ParallelMap, matcher: Matcher
+) -> tuple[list[Search], list[np.ndarray]]:
+    """Label the states drawn for the basin fractions until no a gains an attractor.
+
+    Returns the searches, and for each the index of the attractor that each state reaches.
+    """
+    searches, samples = list(searches), [np.zeros(0, dtype=np.intc) for _ in searches]
+    places = list(range(len(searches)))
+    while places:
+        counts = [len(search.attractors) for search in searches]
+        outcome = fraction_labels([searches[k] for k in places], start, pool)
+        for k, search, labels in zip(places, *outcome, strict=True):
+            searches[k], samples[k] = search, labels
+        new = [len(search.attractors) > count for search, count in zip(searches, counts, strict=True)]
+        seeded = _seed_neighbours(searches, pool, matcher, new)
+        places = [k for k, search in enumerate(seeded) if _has_more_attractors(search, searches[k])]
+        for k in places:
+            searches[k] = seeded[k]
+    return searches, samples
+
+
+def _sweep(searches: Sequence[Search], pool: ParallelMap) -> tuple[list[np.ndarray], list[np.ndarray]]:
+    """Return the index of the attractor that each attractor reaches at the next, and at the previous, a of the grid.
+
+    Undetermined beyond the ends of the grid.
+    """
+    upward = pool("swept upward", _attractors_at_neighbour, searches[:-1], searches[1:])
+    downward = pool("swept downward", _attractors_at_neighbour, searches[1:], searches[:-1])
+    first, last = (np.full(len(search.attractors), UNDETERMINED) for search in (searches[0], searches[-1]))
+    return [*upward, last], [first, *downward]
 
 
 def _attractors_at_neighbour(source: Search, target: Search) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Matches the attractors of two sets by the distance of their section returns.
+"""How the attractors of two sets are matched; the default is by the distance of their section returns.
 
 Reference: G. Datseris, K. Luiz Rossi and A. Wagemakers, "Framework for global stability analysis of dynamical systems",
 Chaos 33 (2023) 073151, which matches sets by their distance and remembers those that vanish for a step.
@@ -6,6 +6,7 @@ Chaos 33 (2023) 073151, which matches sets by their distance and remembers those
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -73,9 +74,40 @@ def outlines(attractors: Sequence[Attractor]) -> dict[int, Outline]:
     return {index: Outline(attractor) for index, attractor in enumerate(attractors) if attractor.partner >= index}
 
 
+class Matcher(ABC):
+    """How the attractors at one value of a parameter are matched to those at another, mostly a neighbouring value.
+
+    A subclass that defines `match` and `is_unchanged` may replace the default, `DistanceMatcher`. It has to be a
+    dataclass if results are cached, since its fields are part of their key.
+    """
+
+    @abstractmethod
+    def match(self, before: Mapping[int, Outline], after: Mapping[int, Outline]) -> dict[int, int]:
+        """Return {key in `after`: key in `before`} of the attractors that match; each matches at most one."""
+
+    @abstractmethod
+    def is_unchanged(self, before: Outline, after: Outline) -> bool:
+        """Return whether an attractor is of the same type as its match: no bifurcation is searched for in between."""
+
+    def match_unchanged(self, before: Mapping[int, Outline], after: Mapping[int, Outline]) -> dict[int, int]:
+        """Return {key in `after`: key in `before`} of the attractors that match and are unchanged."""
+        pairs = self.match(before, after)
+        return {new: old for new, old in pairs.items() if self.is_unchanged(before[old], after[new])}
+
+    def unmatched(
+        self, before: Mapping[int, Outline], after: Mapping[int, Outline]
+    ) -> tuple[dict[int, Outline], dict[int, Outline]]:
+        """Return the attractors of both sets without an unchanged match in the other."""
+        same = self.match_unchanged(before, after)
+        return (
+            {k: item for k, item in before.items() if k not in same.values()},
+            {k: item for k, item in after.items() if k not in same},
+        )
+
+
 @dataclass(frozen=True)
-class Matcher:
-    """Matches the attractors of two sets, mostly those at neighbouring values of a.
+class DistanceMatcher(Matcher):
+    """Matches attractors by the distance of their section returns.
 
     scale : of the model, see `Model.scale`
     longest_period : longest period of orbits that are followed along a; longer ones count as a torus
@@ -99,10 +131,10 @@ class Matcher:
         largest = SAME_SET * self.scale
         cost = np.full((len(second), len(first)), 2.0 * largest)
         for row, column in np.ndindex(cost.shape):
-            one, other = after[second[row]], before[first[column]]
-            synchronized = [item.attractor.symmetry == Symmetry.SYNCHRONIZED for item in (one, other)]
+            later, earlier = after[second[row]], before[first[column]]
+            synchronized = [item.attractor.symmetry == Symmetry.SYNCHRONIZED for item in (later, earlier)]
             if synchronized[0] == synchronized[1]:
-                lesser, greater = one.distances(other, largest).T
+                lesser, greater = later.distances(earlier, largest).T
                 near = lesser + np.minimum(greater, largest)
                 cost[row, column] = np.where(lesser < largest, near, 2.0 * largest).min()
             if all(synchronized):
@@ -110,20 +142,9 @@ class Matcher:
         pairs = zip(*linear_sum_assignment(cost), strict=True)
         return {second[row]: first[column] for row, column in pairs if cost[row, column] < 2.0 * largest}
 
-    def match_unchanged(self, before: Mapping[int, Outline], after: Mapping[int, Outline]) -> dict[int, int]:
-        """Return {key in `after`: key in `before`} of the sets that match with the same kind, symmetry and period."""
-        pairs = self.match(before, after)
-        return {new: old for new, old in pairs.items() if self._features(before[old]) == self._features(after[new])}
-
-    def unmatched(
-        self, before: Mapping[int, Outline], after: Mapping[int, Outline]
-    ) -> tuple[dict[int, Outline], dict[int, Outline]]:
-        """Return the attractors of both sets without a match of the same kind, symmetry and period in the other."""
-        same = self.match_unchanged(before, after)
-        return (
-            {k: item for k, item in before.items() if k not in same.values()},
-            {k: item for k, item in after.items() if k not in same},
-        )
+    def is_unchanged(self, before: Outline, after: Outline) -> bool:
+        """Return whether kind, symmetry and period are the same."""
+        return self._features(before) == self._features(after)
 
     def _features(self, outline: Outline) -> tuple[int, int, int]:
         """Return kind, symmetry and section points of a motion, equal for a torus and all orbits that are too long."""

@@ -1,6 +1,12 @@
-"""Integration of a state over a time: the final state, the events and the mean of J."""
+"""Integration of a state over a time: the final state, the events and the mean of J.
+
+Periodic orbits ask three things of a model: `new_runner`, `rate` and `grazing_distances.distances_of`. Another type of
+model, such as a map, can register these functions for itself.
+"""
 
 from __future__ import annotations
+
+from functools import singledispatch
 
 import numpy as np
 
@@ -28,12 +34,18 @@ def model_at(model: Model, a: float) -> Model:
         raise OrbitError(str(error)) from None
 
 
+@singledispatch
+def new_runner(model: Model, perturbations: np.ndarray | None = None) -> Runner:
+    """Return a runner of a model that keeps its events and carries perturbations; see `Runner`."""
+    return Runner(model, keep_events=True, perturbations=perturbations)
+
+
 def flow(model: Model, start: ChainState, time: float) -> tuple[Runner, tuple[tuple[float, int, int], ...]]:
     """Return the runner after a time, and the events until then: time, block (0 …) and kind (0 stop, 1 start).
 
     Raises OrbitError if the run does not complete.
     """
-    runner = Runner(model, keep_events=True)
+    runner = new_runner(model)
     state_after(runner, start, time)
     return runner, tuple(zip(*(values.tolist() for values in runner.events()), strict=True))
 
@@ -56,6 +68,7 @@ def mean_distance(model: Model, start: ChainState, period: float) -> float:
     return float(observer.results()["batch_integral"][0]) / period
 
 
+@singledispatch
 def rate(model: Model, at: ChainState) -> np.ndarray:
     """Return the time derivative of positions and velocities, shape (2 blocks,)."""
     friction = np.where(at.velocity < 0.0, -1.0, 1.0) * model.law(np.abs(at.velocity))

@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import singledispatch
 
 import numpy as np
 
@@ -83,7 +84,13 @@ def longest_spacing(chain: Chain) -> float:
 
 def grazing_distances(orbit: PeriodicOrbit) -> GrazingDistances:
     """Return the grazing distances of an orbit; raises OrbitError if the orbit cannot be integrated."""
-    model, units = orbit.model, orbit.model.chain.own_units
+    return distances_of(orbit.model, orbit)
+
+
+@singledispatch
+def distances_of(model: Model, orbit: PeriodicOrbit) -> GrazingDistances:
+    """Return the grazing distances of an orbit of a model."""
+    units = model.chain.own_units
     slow, slack = ROUNDING * units.acceleration, ROUNDING * units.force / units.time
     lengths = [_shortest(orbit, block, kind) for kind in (0, 1) for block in range(model.blocks)]
     longest = longest_spacing(model.chain)

@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.periodic_orbits.flow import OrbitError, rate, state_after
+from burridge_knopoff.periodic_orbits.flow import OrbitError, new_runner, rate, state_after
 from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.derivative import missing_derivative
@@ -41,7 +41,7 @@ class ReturnMap:
     @cached_property
     def _runner(self) -> Runner:
         # Creating a runner takes longer than most returns.
-        return Runner(self.model, keep_events=True, perturbations=self._free)
+        return new_runner(self.model, self._free)
 
     def end(self, start: ChainState, time: float) -> ChainState:
         """Return the end of a return from a state; raises OrbitError if the run does not complete."""
@@ -85,7 +85,7 @@ class ReturnMap:
                 except OrbitError:
                     continue
                 failure = "stops and starts change at every step of this parameter"
-                runner = Runner(model, keep_events=True)
+                runner = new_runner(model)
                 moved = self._mirrored(state_after(runner, start, time))
                 if np.array_equal(_by_block(np.stack(runner.events()[1:], axis=1)), _by_block(events)):
                     return (moved.vector() - end.vector()) / (neighbour - coordinate)

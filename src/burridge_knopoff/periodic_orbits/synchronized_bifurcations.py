@@ -17,13 +17,12 @@ from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bifurcations
 from burridge_knopoff.periodic_orbits.critical_values import critical_values
 from burridge_knopoff.periodic_orbits.floquet import multipliers
-from burridge_knopoff.periodic_orbits.flow import OrbitError, state_after
+from burridge_knopoff.periodic_orbits.flow import OrbitError, new_runner, state_after
 from burridge_knopoff.periodic_orbits.following import CONTINUATION, ContinuationSettings, follow
 from burridge_knopoff.periodic_orbits.grazing_distances import grazing_distances
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits, nearby_orbit
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.return_map import symmetry_breaking_directions
-from burridge_knopoff.running.runner import Runner
 
 #: Range of a, in units of `Chain.a_unit`, in which bifurcations are searched for, and steps in a. They do not depend on
 #: the grid of a study. Where a branch ends, the search resumes RESTART_GAP beyond.
@@ -159,7 +158,7 @@ def finite_difference_multiplier(orbit: PeriodicOrbit) -> complex:
     Mirror blocks are displaced by d and followed for a period. By mirror symmetry their difference after the period is
     an odd function of d, so that one step of Richardson extrapolation leaves an error of order d⁴.
     """
-    runner, start, blocks = Runner(orbit.model), orbit.reference, orbit.model.blocks
+    runner, start, blocks = new_runner(orbit.model), orbit.reference, orbit.model.blocks
     basis, units = symmetry_breaking_directions(start.stuck), orbit.model.chain.own_units
     scale = units.state(blocks)
 
