@@ -1,22 +1,30 @@
-"""A bad value is refused in one line."""
+"""A refusal names its key, file or other place in one line; tests leave its other words free."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 import pytest
 
 
-@contextmanager
-def refused(*words: str, error: type[Exception] = ValueError, match: str | None = None) -> Iterator[None]:
-    """Require an error of one line with all these words in it, and with what the pattern matches.
+def refuses(message: str, place: str, *words: str) -> bool:
+    """Return whether a message is one line that names a place, and has the words after it.
 
-    The line is `key: got X, expected Y`; the words may leave `got` out.
+    place : key, option or file, before a colon; or `place: value`, with the value that is refused. `got` is left out
     """
-    with pytest.raises(error, match=match) as caught:
-        yield
-    message = str(caught.value)
-    assert "\n" not in message
-    plain = message.replace(": got ", ": ")
-    assert [text for text in words if text not in message and text not in plain] == [], message
+    end = r"(?!\w)" if ": " in place else r"(\[\d+\])*(, \w+)*:"
+    pattern = re.escape(place).replace(r":\ ", ": (got )?")
+    named = re.search(rf"(?<![\w.]){pattern}{end}", message)
+    rest = message[named.end() :] if named else ""
+    has_words = all(word in rest or word in rest.replace(": got ", ": ") for word in words)
+    return named is not None and has_words and len(message.splitlines()) == 1
+
+
+@contextmanager
+def refused(place: str, *words: str, error: type[Exception] = ValueError) -> Iterator[pytest.ExceptionInfo[Exception]]:
+    """Require an error that names a place in one line."""
+    with pytest.raises(error) as caught:
+        yield caught
+    assert refuses(str(caught.value), place, *words), str(caught.value)

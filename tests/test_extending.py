@@ -74,23 +74,6 @@ for panel, law in zip(panels, laws):
 """
 
 
-CLAIM = """
-import numpy as np
-import xarray as xr
-from burridge_knopoff.claims.ledger import judge
-from burridge_knopoff.claims.paper import CLAIMS
-from tests.claims.worlds import evidence
-claim = CLAIMS["top_speed"]
-axes = {"law": ["linearized"], "initial": ["plus"], "a": [0.08], "block": [1, 2, 3]}
-for largest, verdict in ((0.234, "holds"), (0.24, "holds loosely"), (0.3, "fails"), (np.nan, "not testable")):
-    values = np.reshape([np.nan, 0.2 if largest > 0 else np.nan, largest], (1, 1, 1, 3))
-    summary = xr.Dataset({"window_largest_velocity": (tuple(axes), values)}, axes)
-    judged = judge(claim, evidence({"largest_velocity": summary}))
-    assert judged.verdict == verdict, judged
-    assert [item.value for item in judged.measured] == [largest][: len(judged.measured)]
-"""
-
-
 BIFURCATION = """
 import numpy as np
 from burridge_knopoff import Chain, Model, follow, law_of, limit_cycle, locate_bifurcations, simulate
@@ -114,7 +97,9 @@ def extend(folder):
     for name in (".clang-format", "pyproject.toml", "setup.py", "Snakefile"):
         shutil.copy(REPOSITORY / name, folder)
     (folder / "profiles").symlink_to("workflow/profiles")
-    assert len(apply(PAGE, folder)) == 24
+    (folder / "docs").mkdir()
+    shutil.copy(REPOSITORY / "docs/keys.py", folder / "docs")
+    apply(PAGE, folder)
     run(folder, sys.executable, "setup.py", "--quiet", "build_ext", "--inplace")
 
 
@@ -149,15 +134,24 @@ def test_the_bifurcation_is_found(extended):
     run(extended, sys.executable, "-c", BIFURCATION)
 
 
-def test_the_claim_is_judged(extended):
-    run(extended, sys.executable, "-c", CLAIM)
+def tested(extended, *arguments):
+    """Run tests of the extended tree, which have to pass; return their number."""
+    ran = run(extended, sys.executable, "-m", "pytest", "-n", "0", "-p", "no:cacheprovider", *arguments)
+    return int(re.search(r"(\d+) passed", ran)[1])
+
+
+def test_the_tests_ask_for_no_more_than_the_page_says(extended):
+    """But for the ledger, which needs the default study."""
+    run(extended, sys.executable, "docs/keys.py")
+    assert (
+        tested(extended, "-m", "not slow", "tests/claims", "--ignore=tests/claims/test_docs.py", "tests/study") > 1000
+    )
+    assert tested(extended, "tests/fuzzing/test_configs.py", "-k", "every_key")
+    assert tested(extended, "tests/claims/test_verdicts.py", "-k", "top_speed") == 4
 
 
 def test_the_law_meets_its_obligations(extended):
-    ran = run(
-        extended, sys.executable, "-m", "pytest", "-n", "0", "-p", "no:cacheprovider", "tests/laws", "-k", "quadratic"
-    )
-    assert int(re.search(r"(\d+) passed", ran)[1]) >= 20
+    assert tested(extended, "tests/laws", "-k", "quadratic") >= 20
 
 
 def test_the_page_shows_what_its_code_prints(extended):

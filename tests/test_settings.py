@@ -162,7 +162,7 @@ def test_a_setting_accepts_its_range_and_nothing_else(kind, name):
         taken = getattr(instance_of(kind, **companions(kind, name, value), **{name: value}), name)
         assert np.array_equal(taken, value)
     for value in bad:
-        with refused(match=rf"^{name}(\[\d+\])?: got .*, expected"):
+        with refused(name):
             instance_of(kind, **{name: value})
 
 
@@ -180,7 +180,7 @@ def test_a_setting_accepts_its_range_and_nothing_else(kind, name):
     ],
 )
 def test_settings_fit_each_other(kind, values, key):
-    with refused(match=rf"^{key}: got .*, expected"):
+    with refused(key):
         kind(**values)
 
 

@@ -109,13 +109,13 @@ def test_no_more_is_formatted_than_is_shown(make):
 
 @pytest.mark.parametrize("number", ["b\nc", "b" * 10_000_000])
 def test_a_number_of_a_formula_with_an_odd_name(number):
-    with refused("not in the formula"):
+    with refused(full_key("formula", number)):
         FormulaLaw(0.1, "1 - a*u", **{number: 1.0})
 
 
 @pytest.mark.parametrize("formula", ["1 - a*u\n + b", "1 - " + "a*" * 5_000_000 + "u", "1 - " + "b" * 300 + "*u"])
 def test_an_odd_formula(formula):
-    with pytest.raises(ValueError, match="expected a friction law") as caught:
+    with refused("formula") as caught:
         FormulaLaw(0.1, formula)
     assert str(caught.value).isprintable()
     assert len(str(caught.value)) < 400
@@ -161,10 +161,10 @@ def test_aliases_that_would_fill_the_memory_when_expanded(tmp_path, form):
     lines += [f"x{n}: &x{n} {form.format(', '.join([f'*x{n - 1}'] * 9))}" for n in range(1, 30)]
     path = tmp_path / "bomb.yaml"
     path.write_text("\n".join(lines))
-    with pytest.raises(ConfigError, match=r"bomb.yaml: more than \d+ values"):
+    with refused("bomb.yaml", error=ConfigError):
         read_yaml(path)
     path.write_text("a: &a [*a]")
-    with pytest.raises(ConfigError, match=r"bomb.yaml: more than \d+ values"):
+    with refused("bomb.yaml", error=ConfigError):
         read_yaml(path)
 
 

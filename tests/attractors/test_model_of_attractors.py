@@ -49,9 +49,9 @@ def test_attractors_of_another_model_are_refused(part, call):
     models = MODEL, OTHERS[part]
     first, second = (format_value(attrgetter(part)(model)) for model in models)
     mixed = [stand_in(model=model) for model in models]
-    with refused(f"attractors[1].model.{part}: {second}, expected {first}, as in the model"):
+    with refused(f"attractors[1].model.{part}: {second}", first):
         call(MODEL, mixed)
-    with refused(f"attractors[0].model.{part}: {first}, expected {second}, as in the model"):
+    with refused(f"attractors[0].model.{part}: {first}", second):
         call(OTHERS[part], mixed)
 
 
@@ -69,15 +69,20 @@ def test_a_pickle_without_a_model_is_refused():
     attractor = stand_in()
     del vars(attractor)["model"]
     pickled = pickle.dumps(attractor)
-    with refused(match="^attractor: got a pickle without its model, expected"):
+    with refused("attractor", "model"):
         pickle.loads(pickled)
 
 
 @pytest.mark.parametrize(
-    "other", [replace(MODEL, v=0.2), MODEL.at(coupling=2.0), replace(MODEL, contact="symmetric")], ids=str
+    ("part", "other"),
+    [
+        ("v", replace(MODEL, v=0.2)),
+        ("chain.coupling", MODEL.at(coupling=2.0)),
+        ("contact", replace(MODEL, contact="symmetric")),
+    ],
 )
-def test_an_attractor_is_not_followed_to_another_chain(other):
+def test_an_attractor_is_not_followed_to_another_chain(part, other):
     state = stand_in().motion.state()
     other = replace(other, law=law_of("nonlinear", 0.08))
-    with refused(match=r"^second\..*: got .*, expected .* as in the model$"):
+    with refused(f"second.{part}"):
         follow_law(MODEL, other, state, None)

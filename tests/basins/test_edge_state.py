@@ -27,6 +27,7 @@ from burridge_knopoff.basins.edge_tracking import EdgeTrack
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
 from tests.conftest import quick_first
+from tests.refused import refused
 from tests.scipy_flow import model_events
 
 FEW = EdgeSettings(samples=100)
@@ -253,9 +254,9 @@ def test_smaller_radii_are_used_if_labels_contradict_each_other():
 def test_states_without_a_boundary_between_them_are_refused():
     model, attractors = coexisting("linearized", 0.08)
     first, second = (item.motion.state() for item in attractors[:2])
-    with pytest.raises(ValueError, match="state_b: got a state that reaches attractor 0, as state_a does"):
+    with refused("state_b", "attractor 0"):
         edge_state(model, first, first, attractors)
-    with pytest.raises(ValueError, match="state_b: got a state that reaches no attractor by 20000, expected one"):
+    with refused("state_b", "20000"):
         edge_state(model, first, second, attractors[:1], time_limit=20_000)
-    with pytest.raises(OrbitError, match="by which no state between the basins reaches an attractor"):
+    with pytest.raises(OrbitError, match="no state"):
         edge_state(model, first, second, attractors, time_limit=400)

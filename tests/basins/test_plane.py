@@ -121,11 +121,11 @@ def test_attractors_are_read_back_unchanged(searched, place, pairs):
 @pytest.mark.parametrize(
     ("other", "message"),
     [
-        (replace(MODEL, law=law_of("nonlinear", 0.08)), "model.law: 'nonlinear', expected ['linearized'], as in"),
-        (MODEL.at(0.09), "model.a: 0.09, expected [0.08, 0.1], as in"),
-        (replace(MODEL, v=0.2), "model.v: 0.2, expected [0.1], as in"),
-        (replace(MODEL, contact="symmetric"), "model.contact: 'symmetric', expected ['one_sided'], as in"),
-        (replace(MODEL, chain=Chain(4)), "model.blocks: 4, expected [3], as in"),
+        (replace(MODEL, law=law_of("nonlinear", 0.08)), "model.law: 'nonlinear'"),
+        (MODEL.at(0.09), "model.a: 0.09"),
+        (replace(MODEL, v=0.2), "model.v: 0.2"),
+        (replace(MODEL, contact="symmetric"), "model.contact: 'symmetric'"),
+        (replace(MODEL, chain=Chain(4)), "model.blocks: 4"),
     ],
 )
 def test_files_of_another_model_are_refused(searched, other, message):
@@ -135,7 +135,7 @@ def test_files_of_another_model_are_refused(searched, other, message):
 
 def test_returns_of_another_law_are_refused(searched):
     table, returns, _ = searched
-    with refused("model.law: 'linearized', expected ['nonlinear'], as in"):
+    with refused("model.law: 'linearized'"):
         known_attractors(table, returns.assign_attrs(law="nonlinear"), MODEL)
 
 

@@ -146,10 +146,10 @@ def test_the_error_is_the_scatter_of_many_independent_runs():
 
 def test_columns_of_another_shape_are_refused():
     events = next(starts(5, 2000.0, 1))
-    with pytest.raises(ValueError, match=r"^chosen: got \(2,\), expected shape \(\d+,\), a value for each event$"):
+    with refused("chosen: (2,)"):
         events.rate([True, False])
-    with refused("values: got (), expected shape"):
+    with refused("values: ()"):
         events.mean(1.0)
-    with refused("weights: got 'moment', expected an array of numbers"):
+    with refused("weights: 'moment'"):
         events.mean(events.moment, "moment")
     assert np.isnan(events.mean(events.moment, np.zeros(len(events.time)))).all()

@@ -78,10 +78,10 @@ def test_the_largest_slip_may_be_backward():
 def test_empty_windows_are_refused():
     start = record_events(MODEL, at_rest(MODEL), 50.0).final
     for end in (-5.0, 50.0):
-        with refused(f"end: got {end}, expected a time after the start (50)"):
+        with refused(f"end: {end}"):
             record_events(MODEL, start, end)
     for begin in (60.0, 70.0):
-        with refused(f"end: got 60.0, expected a time after begin ({begin:g})"):
+        with refused("end: 60.0"):
             record_events(MODEL, start, 60.0, begin=begin)
 
 

@@ -56,18 +56,16 @@ def test_runs_of_fixed_steps_can_be_continued():
 
 def test_unknown_solvers_and_steps_are_refused():
     for solver in ("leapfrog", ["rk4"]):
-        with refused("solver: got", "series | map | rk4 | euler"):
+        with refused("solver"):
             record_events(MODEL, START, END, solver=solver)
     for step in (0.0, -1e-3, float("nan"), "1"):
-        with refused("step: got", "a number above 0"):
+        with refused("step"):
             record_events(MODEL, START, END, solver="euler", step=step)
 
 
-@pytest.mark.parametrize(
-    ("step", "words"), [(1.0, "at most 0.468 in this chain"), (1e-30, "at least 2.4e-08 in a run of 60")]
-)
-def test_steps_that_miss_events_or_never_end(step, words):
+@pytest.mark.parametrize(("step", "limit"), [(1.0, "0.468"), (1e-30, "2.4e-08")])
+def test_steps_that_miss_events_or_never_end(step, limit):
     """Steps of 1 once found 18 of 35 events, in a run that completed."""
     for solver in ("rk4", "euler"):
-        with refused(f"step: got {step!r}", words):
+        with refused(f"step: {step!r}", limit):
             record_events(MODEL, START, END, solver=solver, step=step)

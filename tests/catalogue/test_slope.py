@@ -113,7 +113,7 @@ def test_the_error_covers_a_slope_that_changes_within_the_range(monkeypatch):
 def test_times_that_do_not_fit_the_magnitudes_are_refused():
     magnitude = draw_magnitudes(1.0, 0.0, np.inf, 100, 1)
     for time in (np.arange(99.0), np.append(np.arange(99.0), np.inf)):
-        with refused("time: ", "(100,)"):
+        with refused("time", "(100,)"):
             fit_slope(magnitude, 0.0, time=time)
 
 
@@ -178,17 +178,17 @@ def test_infinite_magnitudes():
     """An event whose slips cancel has the magnitude −∞, below every range."""
     magnitude = draw_magnitudes(1.0, 0.0, np.inf, 100, 1)
     assert fit_slope(np.append(magnitude, -np.inf), 0.0) == fit_slope(magnitude, 0.0)
-    with refused("magnitude: ", "to inf between 0 and inf"):
+    with refused("magnitude", "to inf"):
         fit_slope(np.append(magnitude, np.inf), 0.0)
     for low in (-np.inf, np.nan, np.inf):
-        with refused(f"low: got {low}, expected a finite number"):
+        with refused(f"low: {low}"):
             fit_slope(magnitude, low)
 
 
 @pytest.mark.parametrize("number", [np.nan, -np.nan])
 def test_nan_magnitudes_are_refused(number):
     """NaN belongs to no range, so the other magnitudes would be taken for the whole catalogue."""
-    with refused("magnitude: "):
+    with refused("magnitude"):
         fit_slope(np.append(draw_magnitudes(1.0, 0.0, np.inf, 100, 1), number), 0.0)
 
 
@@ -254,7 +254,7 @@ def test_magnitudes_and_ends_at_the_limit_of_numbers(size, low, high):
 
 
 def test_magnitudes_that_hardly_differ_have_no_slope():
-    with refused("magnitude: ", "between 0 and inf"):
+    with refused("magnitude", "between 0 and inf"):
         fit_slope(1e-310 * draw_magnitudes(1.0, 0.0, np.inf, 200, 4), 0.0)
 
 
@@ -278,12 +278,12 @@ def test_another_distribution_is_rejected():
 
 
 def test_too_few_or_equal_magnitudes_are_refused():
-    with refused("magnitude: 3 events between 0 and 2"):
+    with refused("magnitude: 3"):
         fit_slope(np.array([0.5, 1.0, 1.5]), 0.0, 2.0)
-    with refused("magnitude: 1 to 1 between 0 and 2"):
+    with refused("magnitude: 1 to 1"):
         fit_slope(np.ones(20), 0.0, 2.0)
 
 
 def test_magnitudes_in_two_dimensions_are_refused():
-    with refused("magnitude: ", "(events,)"):
+    with refused("magnitude", "(events,)"):
         fit_slope(np.arange(20.0).reshape(2, 10), 0.0)

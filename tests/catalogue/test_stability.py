@@ -19,6 +19,7 @@ from burridge_knopoff.running.status import Status
 from tests.conftest import quick_first
 from tests.kernel.test_catalogue import record_catalogue
 from tests.kernel.test_quasistatic import next_event
+from tests.refused import refused
 
 
 def rough(model, seed=1, time=0.0):
@@ -185,9 +186,7 @@ def test_multipliers_begin_at_rest(loading, share):
     ended = events.time + (events.duration if loading == "steady" else 0.0)
     end = 0.5 * (ended[2] + events.time[3])
     if share < -1.0:
-        with pytest.raises(
-            ValueError, match=r"^start: got .*, expected a state in which all blocks stick, none beyond"
-        ):
+        with refused("start"):
             event_multipliers(model, start, end, loading=loading)
         return
     multipliers = event_multipliers(model, start, end, loading=loading)
@@ -213,7 +212,7 @@ def test_multipliers_begin_at_rest(loading, share):
 
 
 @pytest.mark.parametrize(
-    ("share", "contact", "loading", "refused"),
+    ("share", "contact", "loading", "is_refused"),
     [
         (0.97, "one_sided", "steady", True),
         (0.94, "one_sided", "steady", False),
@@ -224,19 +223,19 @@ def test_multipliers_begin_at_rest(loading, share):
         (-1.03, "symmetric", "quasistatic", True),
     ],
 )
-def test_multipliers_count_the_dashpots_to_the_driver(share, contact, loading, refused):
+def test_multipliers_count_the_dashpots_to_the_driver(share, contact, loading, is_refused):
     """A block beyond its threshold because of its dashpot was once taken for one at rest."""
     chain = Chain(2, coupling=2.0, pulling=1.0, pulling_damping=(0.5, 0.0))
     model = Model(chain, law_of("carlson_langer", 1.0), 0.1, contact)
     position = np.linalg.solve(chain.stiffness, -np.array([share, -0.2]))
     start = ChainState(position - model.sliding_offset, np.zeros(2), np.ones(2, dtype=bool))
     events = record_events(model, start, 200.0, loading=loading)
-    assert bool(events.time[0] == 0.0) is refused
+    assert bool(events.time[0] == 0.0) is is_refused
     ended = events.time + (events.duration if loading == "steady" else 0.0)
     gap = np.flatnonzero(ended[:-1] < events.time[1:])[2]
     end = 0.5 * (ended[gap] + events.time[gap + 1])
-    if refused:
-        with pytest.raises(ValueError, match="^start: got .*, expected a state in which all blocks stick"):
+    if is_refused:
+        with refused("start"):
             event_multipliers(model, start, end, loading=loading)
     else:
         assert np.isfinite(event_multipliers(model, start, end, loading=loading)).all()
@@ -307,5 +306,5 @@ def test_no_exponent_of_a_run_that_did_not_complete(loading, monkeypatch):
     assert 0.0 < spectrum.end_time < 300.0
     assert repr(spectrum) == f"<EventExponents {ended}, {spectrum.events} events>"
     still = ChainState(np.array([-0.5, -0.52, -0.51]) - model.sliding_offset, np.zeros(3), np.ones(3, dtype=bool))
-    with pytest.raises(ValueError, match=r"^end: got 300\.0, expected an earlier time: the run did not complete: step"):
+    with refused("end: 300.0", "step limit"):
         event_multipliers(model, still, 300.0, loading=loading)

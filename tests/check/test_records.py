@@ -1,7 +1,6 @@
 """The record of a study: it is refused in a line unless this version, or an earlier one, has written it."""
 
 import json
-import re
 from functools import reduce
 from operator import getitem
 
@@ -15,6 +14,7 @@ from burridge_knopoff.cli import main
 from burridge_knopoff.study.recorded import recorded_study
 from tests.check.conftest import change_record
 from tests.forged import forge
+from tests.refused import refused, refuses
 
 
 def is_part(one, other):
@@ -76,21 +76,20 @@ def test_a_folder_that_is_no_study_is_refused_in_a_line(tmp_path, capsys, conten
 @pytest.mark.parametrize(
     ("place", "change", "words"),
     [
-        ("", {"colour": "red"}, "colour: unknown key"),
-        ("motion", {"colour": 1}, "motion.colour: unknown key"),
-        ("attractors", {"pushes": 8}, "attractors.pushes: unknown key (renamed to perturbations)"),
-        ("", {"basins": 3}, "basins: got 3, expected keys"),
+        ("", {"colour": "red"}, "colour: "),
+        ("motion", {"colour": 1}, "motion.colour: "),
+        ("attractors", {"pushes": 8}, "attractors.pushes: "),
+        ("", {"basins": 3}, "basins: "),
     ],
 )
 def test_a_study_with_a_key_that_this_version_lacks_is_refused_in_a_line(results, capsys, place, change, words):
     change_record(results, lambda record: reduce(getitem, place.split(), record["config"]).update(change))
-    line = f"{results / 'study.json'}: not a study of this version: {words}"
+    path = str(results / "study.json")
     for command in ("check", "prune"):
         assert main([command, str(results)]) == 2
         said = capsys.readouterr().err
-        assert said.startswith(f"bk {command}: {line}")
-        assert said.endswith("; run snakemake again\n")
-    with pytest.raises(ValueError, match=re.escape(line)):
+        assert refuses(said, path, words, "snakemake")
+    with refused(path, words):
         open_study(results)
 
 

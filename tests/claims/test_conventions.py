@@ -89,12 +89,12 @@ def test_a_convention_that_could_change_the_verdict_is_not_left_out(own: str) ->
     def judge_contact(attractors: xarray.Dataset) -> tuple[str, str]:
         return (own, "") if attractors["contact"].item() == "symmetric" else ("", "")
 
-    with pytest.raises(NotTestableError, match=r"^under \(one_sided, tested\), which could change the verdict"):
+    with pytest.raises(NotTestableError, match=r"\(one_sided, tested\)"):
         judge_conventions(evidence(paper_world()), own, "why", [], [], judge_contact)
     # Under another contact than the paper's each convention counts.
-    with pytest.raises(NotTestableError, match=r"^under \(one_sided, moving\) and \(one_sided, tested\), which"):
+    with pytest.raises(NotTestableError, match=r"\(one_sided, moving\).*\(one_sided, tested\)"):
         judge_conventions(evidence(paper_world(), contact="symmetric"), own, "why", [], [], judge_contact)
-    with pytest.raises(NotTestableError, match=r"no summary attractors\.nc"):
+    with pytest.raises(NotTestableError, match=r"attractors\.nc"):
         judge_conventions(evidence({}), own, "why", [], [], judge_contact)
 
 

@@ -75,12 +75,11 @@ def test_each_tenth_of_a_range_needs_a_value() -> None:
 
 
 def test_what_is_missing_is_said_in_words() -> None:
-    words = "a statement on all 0.005 ≤ a ≤ 0.08 needs values of a from 0.005 to 0.065, where the study has none"
-    with pytest.raises(NotTestableError, match=f"^{words}$"):
+    with pytest.raises(NotTestableError, match=r"\b0\.005 to 0\.065\b.*the study"):
         check_covered(np.linspace(0.07, 0.1, 13), SYNCHRONY, "the study")
-    with pytest.raises(NotTestableError, match=r"needs values of a with a > 0, where chains\.a has none$"):
+    with pytest.raises(NotTestableError, match=r"\ba > 0\b.*chains\.a"):
         check_covered(np.zeros(1), WEAKENING, "chains.a")
-    with pytest.raises(NotTestableError, match="needs 10 values of a; the study has 9 there$"):
+    with pytest.raises(NotTestableError, match=r"\b10 values\b.*\b9\b"):
         check_covered(np.linspace(0.01, 0.09, 9), BELOW, "the study")
 
 

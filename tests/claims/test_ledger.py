@@ -115,7 +115,7 @@ def test_a_claim_reads_what_it_declares(claim: Claim) -> None:
 def test_a_summary_that_a_claim_does_not_declare_is_refused() -> None:
     """This includes a summary that the study does not have, since another study may."""
     for read in (lambda data: data.summary("basins"), lambda data: "basins" in data.summaries):
-        with refused("basins: not declared by the claim upper_edge"):
+        with refused("basins", "upper_edge"):
             replace(CLAIMS["upper_edge"], function=read)(evidence(paper_world()))
 
 
@@ -170,8 +170,7 @@ def test_a_proved_number_is_marked() -> None:
     rows = [row for row in csv.DictReader(io.StringIO(as_csv(content))) if row["proved"]]
     assert [(row["value"], row["proved"]) for row in rows] == [("0.0801", "proved")]
     world["orbits"]["critical_a"].values[0] += 1e-6
-    reason = r"critical_a: got 0\.080101.*, expected 0\.0800999 to 0\.0801001 by proof\.nc"
-    with pytest.raises(ValueError, match=reason):
+    with refused("critical_a", "0.080101", "0.0800999", "proof.nc"):
         ledger("test", claims, evidence(world), [])
 
 
@@ -240,7 +239,7 @@ def test_a_coarse_grid_neither_helps_nor_harms_a_claim() -> None:
     assert judge_interval(0.146, 0.148, 0.14, 0.005, 0.01) == "holds loosely"
     assert judge_interval(0.2, math.inf, 0.14, 0.005, 0.01) == judge_interval(0.0, 0.1, 0.14, 0.005, 0.01) == "fails"
     for low, high in ((0.1, 0.2), (0.14, 0.148), (0.146, 0.2), (0.13, math.inf)):
-        with pytest.raises(NotTestableError, match="too coarse"):
+        with pytest.raises(NotTestableError, match="coarse"):
             judge_interval(low, high, 0.14, 0.005, 0.01)
 
 

@@ -42,7 +42,7 @@ def test_one_rule_judges_all_shares(hits: int, count: int, expected: str) -> Non
     one, open_one = {"one": Share(9, 9), "other": share}, expected == UNDECIDED
     assert judge_shares(one, 0.9) == (expected, texts)
     if open_one:
-        with pytest.raises(UndecidedError, match=rf"{hits} of {count} cases \(other\), and the 95 % interval"):
+        with pytest.raises(UndecidedError, match=rf"{hits} of {count}\b.*\(other\)"):
             judge_worst_share(one, 0.9)
     else:
         assert judge_worst_share(one, 0.9) == expected

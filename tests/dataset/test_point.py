@@ -1,8 +1,10 @@
 """Point files: content, CF compliance, reproducible bytes and size."""
 
+import re
 import shlex
 import subprocess
 import sys
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +15,7 @@ from burridge_knopoff import simulate
 from burridge_knopoff.dataset.point import POINT_VARIABLES, point_attributes, write_point
 from burridge_knopoff.laws import FormulaLaw
 from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.running.trajectory import Trajectory
 
 
 @pytest.fixture(scope="module")
@@ -51,6 +54,12 @@ def test_the_file_and_the_dataset_have_the_same_content(trajectory, path):
         for name, variable in file.variables.items():
             assert variable.attrs["long_name"], name
             assert "_FillValue" not in variable.encoding, name
+
+
+def test_every_observable_of_a_run_has_a_test(repository):
+    """A field of a trajectory is a row of the point files, or not; some test mentions it."""
+    words = {word for path in repository.glob("tests/**/test_*.py") for word in re.findall(r"\w+", path.read_text())}
+    assert {field.name for field in fields(Trajectory)} - words == set()
 
 
 def test_flags_keep_their_meanings():

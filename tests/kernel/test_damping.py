@@ -16,6 +16,7 @@ from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.equilibrium import eigenvalues
 from tests.flows import carry, directions
 from tests.kernel.test_catalogue import at_rest, last_rest, record_catalogue
+from tests.refused import refused
 
 
 @pytest.mark.parametrize("mass", [1.0, 2.5])
@@ -200,12 +201,12 @@ def test_damping_scales_with_springs_and_masses():
 
 def test_the_closed_form_is_refused():
     for dashpots in ({"damping": 0.1}, {"pulling_damping": (0.0, 0.1, 0.0)}):
-        with pytest.raises(ValueError, match="^solver: got 'map', expected series .* without dashpots$"):
+        with refused("solver: 'map'", "dashpots"):
             simulate(Model(Chain(3, **dashpots), law_of("linearized", 0.1)), initial="plus", solver="map")
 
 
 def test_long_steps_are_refused():
     """A dashpot damps faster than a spring pulls."""
     model = Model(Chain(3, damping=100.0), law_of("linearized", 0.1))
-    with pytest.raises(ValueError, match="^step: got 0.001, expected at most"):
+    with refused("step: 0.001"):
         simulate(model, initial="plus", solver="rk4", settings=Settings(solver="rk4"))

@@ -10,6 +10,7 @@ from burridge_knopoff.kernel._core import Catalogue, EventLog
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import MOST_NUMBERS
+from tests.refused import refused
 
 LIMIT = "burridge_knopoff.running.runner.EVENTS_PER_BLOCK_AND_UNIT"
 
@@ -110,7 +111,7 @@ def test_a_table_that_was_full_is_empty_in_the_next_run(monkeypatch):
     model = Model(Chain(1, pulling=1.0), law_of("linearized", 0.3), 0.1)
     runner = Runner(model, keep_events=True, events_from=np.inf)
     runner.begin(at_rest(model))
-    with pytest.raises(ValueError, match="^events: got more than"):
+    with refused("events"):
         runner.run(200.0)
     runner.begin(at_rest(model))
     assert runner.run(20.0) == Status.COMPLETED
@@ -127,6 +128,6 @@ def test_events_that_are_left_out_fill_no_catalogue(most):
     runner.begin(at_rest(model))
     assert runner.run(end) == Status.COMPLETED
     assert not catalogue.full
-    with pytest.raises(ValueError, match="^catalogue: got more than"):
+    with refused("catalogue"):
         runner.run(end + 50.0)
     assert len(catalogue.take()["time"]) == most

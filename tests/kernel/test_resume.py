@@ -15,6 +15,7 @@ from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run as simulation
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import MOST_NUMBERS
+from tests.refused import refused
 
 LAWS = {"linearized": 0.3, "nonlinear": 3.0, "exponential": 0.3, "carlson_langer": 5.0}
 #: A law that is steep enough to let one block slip at a time, and drops at the start, as quasi-static loading needs.
@@ -211,5 +212,5 @@ def test_the_end_of_a_catalogue_is_accepted_wherever_a_state_is():
         if loading == "quasistatic":
             values = event_multipliers(model, final, 200.2, loading=loading)
             assert abs(values[-1]) < 1e-9 * abs(values[0]) < 1e3
-            with pytest.raises(ValueError, match=r"^end: got 400\.0, expected a time before perturbations overflow$"):
+            with refused("end: 400.0"):
                 event_multipliers(model, final, 400.0, loading=loading)

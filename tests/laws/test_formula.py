@@ -34,7 +34,7 @@ REFUSED = {
 
 @pytest.mark.parametrize(("formula", "words"), [(formula, words) for words in REFUSED for formula in REFUSED[words]])
 def test_refused_in_one_line(formula, words):
-    with refused(words, "mine"):
+    with refused("mine", words):
         FormulaLaw(0.3, formula, name="mine")
 
 
@@ -44,7 +44,7 @@ def test_a_pole_beyond_all_speeds_is_allowed():
 
 @pytest.mark.parametrize("number", ["a", "u"])
 def test_reserved_names_are_not_parameters(number):
-    with pytest.raises(ValueError, match=rf"^mine\.{number}: got a reserved name"):
+    with refused(f"mine.{number}"):
         law_of("mine", 0.1, {"formula": "1 - a*u", number: 1.0})
 
 
@@ -52,10 +52,10 @@ def test_parameters_of_a_built_in_law():
     assert law_of("carlson_langer", 0.1, {"sigma": 0.2})(0.0) == pytest.approx(0.8)
     assert law_of("weak", 0.1, {"law": "carlson_langer", "sigma": 0.2}).name == "weak"
     for description, words in (
-        ({"tau": 0.2}, "carlson_langer.tau: not a parameter of this law"),
-        ({"sigma": 1.0}, "a constant term is not finite"),
-        ({"sigma": "x"}, "sigma: got 'x', expected"),
-        ({"law": "none"}, "law: got 'none', expected"),
+        ({"tau": 0.2}, "carlson_langer.tau"),
+        ({"sigma": 1.0}, "carlson_langer"),
+        ({"sigma": "x"}, "sigma: 'x'"),
+        ({"law": "none"}, "law: 'none'"),
     ):
         with refused(words):
             law_of("carlson_langer", 0.1, description)
@@ -84,9 +84,9 @@ def test_a_formula_equals_the_built_in_law():
 
 def test_the_way_to_give_a_formula_is_named():
     for text, formula in {"1/(1 + a*u)": "1/(1 + a*u)", "coulomb": "1 - a*u"}.items():
-        with refused(f"law: {text!r}", f'or a formula: {{"formula": "{formula}"}}'):
+        with refused(f"law: {text!r}", f'{{"formula": "{formula}"}}'):
             law_of(text, 0.1)
-    with refused("law: 'linear'", "or a formula (did you mean linearized?)"):
+    with refused("law: 'linear'", "linearized?"):
         law_of("linear", 0.1)
 
 

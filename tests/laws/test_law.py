@@ -134,7 +134,7 @@ def test_the_papers_laws_touch_at_rest(a, speed):
     ],
 )
 def test_bad_a(a):
-    with refused("a: got ", "expected"):
+    with refused("a"):
         law_of("linearized", a)
 
 
@@ -151,7 +151,7 @@ def test_a_law_does_not_change(law):
     for same in (law, copy.copy(law), copy.deepcopy(law), pickle.loads(pickle.dumps(law)), law.at(0.2)):
         assert same == law
         for name in ("a", "formula", "parameters"):
-            with pytest.raises(AttributeError, match=f"{name}: a law cannot be changed"):
+            with refused(name, error=AttributeError):
                 setattr(same, name, 0.3)
         with pytest.raises(TypeError):
             same.parameters["c"] = 0.1
@@ -166,14 +166,14 @@ def test_equal_laws(name):
     assert law != LAWS[name](0.1)
     assert len({law, LAWS[name](0.2), LAWS[name](0.3)}) == 2
     assert pickle.loads(pickle.dumps(law)) == copy.deepcopy(law) == law
-    with refused("a: got -0.1, expected"):
+    with refused("a: -0.1"):
         law.at(-0.1)
 
 
 def test_a_law_may_be_above_1_at_rest_by_rounding():
     law = FormulaLaw(0.1, "3*1.1 - 2.3 - a*u")
     assert 1.0 < float(law(0.0)) < 1.0 + 1e-15
-    with pytest.raises(ValueError, match="its value at u = 0 is 1, not above 0 and at most 1"):
+    with refused("formula", "u = 0 is 1"):
         FormulaLaw(0.1, "1.0000001 - a*u")
 
 

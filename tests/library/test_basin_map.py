@@ -38,25 +38,25 @@ def test_labels_are_those_of_whole_runs():
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"law": "cubic"}, "linearized | nonlinear"),
+        ({"law": "cubic"}, "law: 'cubic'"),
         ({"a": None}, "a: None"),
-        ({"a": -1.0}, "0 or more"),
-        ({"a": 0.0}, "no attractor"),
-        ({"initial": "middle"}, "minus | plus"),
+        ({"a": -1.0}, "a: -1.0"),
+        ({"a": 0.0}, "transient"),
+        ({"initial": "middle"}, "initial: 'middle'"),
         ({"v": 0.0}, "v: 0.0"),
-        ({"start": "soon"}, "moving | tested"),
+        ({"start": "soon"}, "start: 'soon'"),
         ({"pixels": 0}, "pixels: 0"),
         ({"threads": 0}, "threads: 0"),
         ({"first_position": (1.0, 1.0)}, "first_position"),
         ({"window": 0.0}, "window: 0.0"),
-        ({"windows": 10.0}, "windows: not a setting"),
-        ({"law": Model(Chain(3), law_of("linearized", 0.08))}, "together with a model"),
-        ({"chain": Chain(4)}, "initial state 'minus'"),
-        ({"initial": InitialState("back", (0.0, 0.0), (0.1, -0.1))}, "one_sided"),
+        ({"windows": 10.0}, "windows"),
+        ({"law": Model(Chain(3), law_of("linearized", 0.08))}, "contact"),
+        ({"chain": Chain(4)}, "blocks: 4"),
+        ({"initial": InitialState("back", (0.0, 0.0), (0.1, -0.1))}, "velocity: -0.1"),
     ],
 )
 def test_bad_input_is_refused_in_one_line(options, words):
-    with refused(words, match="expected|not known|not a setting"):
+    with refused(words):
         basin_map(**{"law": "linearized", "a": 0.08, "pixels": 2, "samples": 3, **options})
 
 

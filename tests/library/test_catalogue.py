@@ -22,7 +22,7 @@ def test_a_run_continues_as_a_catalogue():
     assert len(catalogue.time) > 100
     np.testing.assert_allclose(catalogue.time, whole.time, rtol=1e-12)
     np.testing.assert_allclose(catalogue.moment, whole.moment, rtol=1e-9)
-    with refused("window: got 0.0, expected a number above 0 and at most 1e+09"):
+    with refused("window: 0.0"):
         run.catalogue(0.0)
 
 

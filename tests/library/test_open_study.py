@@ -11,6 +11,7 @@ import xarray
 from burridge_knopoff import open_study
 from burridge_knopoff.show.result import open_result
 from tests.forged import forge
+from tests.refused import refused
 from tests.small_study import OF_POINTS, run_study
 
 CONFIG = {"study": "few", "a": [0.05, 0.08, 0.22], "initial": {"minus": {}, "plus": {}}}
@@ -71,8 +72,8 @@ def test_files_are_opened_on_request(results, tmp_path):
     assert "summary/mean_distance" in repr(study)
     assert study["points/linearized/plus/a0.2200"].sizes["block"] == 3
     assert study["summary/lyapunov"].sizes["a"] == 3
-    for path in ("points", "summary", POINT.removesuffix(".nc"), "/"):
-        with pytest.raises(ValueError, match="is empty"):
+    for path, name in (("points", POINT), ("summary", SUMMARY), (POINT.removesuffix(".nc"), POINT), ("/", SUMMARY)):
+        with refused(str(tmp_path / name), "empty"):
             study[path]
 
 
@@ -89,7 +90,7 @@ def test_groups_are_trees_of_their_files(results):
 def test_a_missing_file_is_named(results, path):
     study = open_study(results)
     assert path not in study
-    with pytest.raises(KeyError, match=f"{path}: not among the results in {results}"):
+    with refused(path, str(results), error=KeyError):
         study[path]
 
 
@@ -105,23 +106,23 @@ def test_parts_of_arrays_are_read_on_request(results):
 @pytest.mark.parametrize(
     ("name", "damage", "reason"),
     [
-        (POINT, lambda path: path.write_bytes(b""), "is empty"),
-        (POINT, lambda path: path.write_bytes(b"no netCDF"), "is corrupt, or not a netCDF file"),
+        (POINT, lambda path: path.write_bytes(b""), "empty"),
+        (POINT, lambda path: path.write_bytes(b"no netCDF"), "corrupt"),
         (
             POINT,
             lambda path: shutil.copy(path.with_name("a0.0800.nc"), path),
-            "is another run: a: got 0.08, expected 0.05",
+            "a: got 0.08",
         ),
-        (SUMMARY, lambda path: path.write_bytes(b""), "is empty"),
+        (SUMMARY, lambda path: path.write_bytes(b""), "empty"),
         (
             SUMMARY,
             lambda path: forge(path, file="summary/x.nc"),
-            f"is another file: got summary/x.nc, expected {SUMMARY}",
+            "summary/x.nc",
         ),
         (
             SUMMARY,
             lambda path: forge(path, params='{"synchronization_threshold": 0.3}'),
-            "was made with synchronization_threshold: got 0.3, expected 1e-06",
+            "synchronization_threshold",
         ),
     ],
 )
@@ -132,7 +133,7 @@ def test_a_file_that_is_corrupt_or_not_of_the_study_is_named(results, tmp_path, 
     messages = []
     study = open_study(tmp_path)
     for read in (lambda: study[name.removesuffix(".nc")], lambda: open_result(tmp_path / name)):
-        with pytest.raises(ValueError, match=reason) as caught:
+        with refused(str(tmp_path / name), reason) as caught:
             read()
         messages.append(str(caught.value))
     assert messages[0] == messages[1]
@@ -143,9 +144,9 @@ def test_a_file_that_is_corrupt_or_not_of_the_study_is_named(results, tmp_path, 
 
 
 def test_a_folder_without_a_study_is_refused(tmp_path):
-    with pytest.raises(ValueError, match="results/nothing: this folder does not exist"):
+    with refused("results/nothing"):
         open_study("results/nothing")
-    with pytest.raises(ValueError, match="not the results of a study"):
+    with refused(str(tmp_path)):
         open_study(tmp_path)
 
 

@@ -20,6 +20,7 @@ from burridge_knopoff import (
     simulate,
     synchronized_orbit,
 )
+from tests.refused import refused
 
 COPIES = {"pickle": lambda value: pickle.loads(pickle.dumps(value)), "deepcopy": copy.deepcopy}
 ROUGH = InitialState("rough", {"random": "uniform", "low": -1.0, "high": -0.9, "seed": 1}, 0.0)
@@ -124,5 +125,5 @@ def test_runs_in_other_processes():
 def test_a_state_of_another_version_is_refused():
     step = run().final.last_step[1]
     for bytes_ in (b"", step.__getstate__()[:-1], step.__getstate__() + b"\0"):
-        with pytest.raises(ValueError, match=r"^state: got a state pickled by another version of the kernel"):
+        with refused("state", "version"):
             type(step).__new__(type(step)).__setstate__(bytes_)

@@ -41,69 +41,72 @@ def attractors():
 
 
 @pytest.mark.parametrize(
-    ("given", "message"),
+    ("given", "place"),
     [
-        ({"velocity": VELOCITY[:1]}, "shapes"),
-        ({"velocity": VELOCITY[:3]}, "shapes"),
-        ({"position": -1.0, "velocity": 0.1}, "shapes"),
-        ({"position": POSITION[:, :2], "velocity": VELOCITY[:, :2]}, "shapes"),
-        ({"position": POSITION * np.nan}, "finite"),
-        ({"velocity": -VELOCITY}, "velocities of at least 0"),
-        ({"start": "stuck"}, "start: got 'stuck', expected"),
-        ({"time_limit": -1.0}, "time_limit: got -1.0, expected"),
-        ({"time_limit": float("nan")}, "time_limit: got nan, expected"),
-        ({"threads": 0}, "threads: got 0, expected"),
-        ({"position": POSITION + 1j}, "position: got .*, expected an array of numbers"),
-        ({"position": [[1.0], [1.0, 2.0]]}, "position: got .*, expected an array of numbers"),
-        ({"position": np.ma.array(POSITION, mask=POSITION < 0.0)}, "finite"),
-        ({"model": "linearized"}, "model: got 'linearized', expected a Model"),
-        ({"attractors": ([], np.zeros(3))}, r"attractors\[0\]: got \[\], expected an Attractor"),
+        ({"velocity": VELOCITY[:1]}, "velocity"),
+        ({"velocity": VELOCITY[:3]}, "velocity"),
+        ({"position": -1.0, "velocity": 0.1}, "velocity"),
+        ({"position": POSITION[:, :2], "velocity": VELOCITY[:, :2]}, "velocity"),
+        ({"position": POSITION * np.nan}, "velocity"),
+        ({"velocity": -VELOCITY}, "velocity"),
+        ({"start": "stuck"}, "start: 'stuck'"),
+        ({"time_limit": -1.0}, "time_limit: -1.0"),
+        ({"time_limit": float("nan")}, "time_limit: nan"),
+        ({"threads": 0}, "threads: 0"),
+        ({"position": POSITION + 1j}, "position"),
+        ({"position": [[1.0], [1.0, 2.0]]}, "position"),
+        ({"position": np.ma.array(POSITION, mask=POSITION < 0.0)}, "velocity"),
+        ({"model": "linearized"}, "model: 'linearized'"),
+        ({"attractors": ([], np.zeros(3))}, "attractors[0]: []"),
     ],
 )
-def test_states_that_cannot_be_labelled(attractors, given, message):
+def test_states_that_cannot_be_labelled(attractors, given, place):
     states = {"model": MODEL, "attractors": attractors, "position": POSITION, "velocity": VELOCITY, **given}
-    with refused(match=message):
+    with refused(place):
         label_states(**states)
 
 
 @pytest.mark.parametrize(
-    "call",
+    ("call", "place"),
     [
-        lambda: limit_cycle(Model(Chain(4), MODEL.law), STATE),
-        lambda: limit_cycle(MODEL, ChainState(np.zeros(3), np.zeros(2), np.zeros(3, bool)), 10.0),
-        lambda: limit_cycle(MODEL, "plus"),
-        lambda: limit_cycle(MODEL, STATE, float("nan")),
-        lambda: limit_cycle(MODEL, STATE, -5.0),
-        lambda: find_periodic_orbit(MODEL, STATE, float("nan"), Symmetry.ASYMMETRIC),
-        lambda: find_periodic_orbit(MODEL, STATE, 0.0, Symmetry.ASYMMETRIC),
-        lambda: find_periodic_orbit(MODEL, STATE, 10.0, "none"),
-        lambda: transverse_exponent(MODEL, STATE, -5.0, 100.0),
-        lambda: transverse_exponent(MODEL, STATE, 5.0, -100.0),
-        lambda: follow(None, (0.1, 0.05)),
-        lambda: follow(None, (float("nan"), 0.6)),
-        lambda: simulate("linearized", 0.08, np.zeros((3, 2))),
-        lambda: simulate("linearized", 0.08, np.ma.array([[-1.0, -1.0], [0.1, 0.1]], mask=[[0, 1], [0, 0]])),
-        lambda: simulate({"law": ["linearized"]}, 0.08),
-        lambda: simulate({"formula": 1.0}, 0.08),
-        lambda: simulate("linearized", 0.08, settings={"window": 5}),
-        lambda: sweep("linearized", np.ma.array([0.05, 0.08], mask=[0, 1])),
-        lambda: synchronized_orbit("linearized"),
-        lambda: synchronized_orbit(Model(Chain(3, threshold=[1, 2, 3]), MODEL.law)),
-        lambda: multipliers(MODEL),
-        lambda: find_attractors("linearized"),
-        lambda: find_attractors(MODEL, {"samples": 3}),
-        lambda: open_study(None),
-        lambda: Chain(3, coupling=xr.DataArray([0.08])),
+        (lambda: limit_cycle(Model(Chain(4), MODEL.law), STATE), "state"),
+        (lambda: limit_cycle(MODEL, ChainState(np.zeros(3), np.zeros(2), np.zeros(3, bool)), 10.0), "state"),
+        (lambda: limit_cycle(MODEL, "plus"), "state"),
+        (lambda: limit_cycle(MODEL, STATE, float("nan")), "settling"),
+        (lambda: limit_cycle(MODEL, STATE, -5.0), "settling"),
+        (lambda: find_periodic_orbit(MODEL, STATE, float("nan"), Symmetry.ASYMMETRIC), "return_time"),
+        (lambda: find_periodic_orbit(MODEL, STATE, 0.0, Symmetry.ASYMMETRIC), "return_time"),
+        (lambda: find_periodic_orbit(MODEL, STATE, 10.0, "none"), "symmetry"),
+        (lambda: transverse_exponent(MODEL, STATE, -5.0, 100.0), "alignment"),
+        (lambda: transverse_exponent(MODEL, STATE, 5.0, -100.0), "window"),
+        (lambda: follow(None, (0.1, 0.05)), "interval"),
+        (lambda: follow(None, (float("nan"), 0.6)), "interval"),
+        (lambda: simulate("linearized", 0.08, np.zeros((3, 2))), "initial"),
+        (
+            lambda: simulate("linearized", 0.08, np.ma.array([[-1, -1], [0.1, 0.1]], mask=[[0, 1], [0, 0]])),
+            "initial.position",
+        ),
+        (lambda: simulate({"law": ["linearized"]}, 0.08), "law"),
+        (lambda: simulate({"formula": 1.0}, 0.08), "formula"),
+        (lambda: simulate("linearized", 0.08, settings={"window": 5}), "settings"),
+        (lambda: sweep("linearized", np.ma.array([0.05, 0.08], mask=[0, 1])), "a"),
+        (lambda: synchronized_orbit("linearized"), "model"),
+        (lambda: synchronized_orbit(Model(Chain(3, threshold=[1, 2, 3]), MODEL.law)), "chain"),
+        (lambda: multipliers(MODEL), "orbit"),
+        (lambda: find_attractors("linearized"), "a"),
+        (lambda: find_attractors(MODEL, {"samples": 3}), "contact"),
+        (lambda: open_study(None), "results"),
+        (lambda: Chain(3, coupling=xr.DataArray([0.08])), "chain.coupling"),
     ],
 )
-def test_calls_without_an_answer_are_refused(call):
-    with refused(match="expected|is not a valid"):
+def test_calls_without_an_answer_are_refused(call, place):
+    with refused(place):
         call()
 
 
 def test_the_kernel_refuses_arrays_of_wrong_shape():
     kernel: Ensemble = new_ensemble(MODEL)
-    with pytest.raises(ValueError, match=r"got shapes \(4, 3\), \(1, 3\), \(4, 3\), expected \(n, 3\) for each"):
+    with refused("stuck", "(1, 3)"):
         kernel.run(POSITION, VELOCITY[:1], np.zeros((4, 3), np.intc), [1.0])
 
 
@@ -125,10 +128,10 @@ def test_a_law_as_in_a_config():
 def test_an_incomplete_custom_law_is_refused(missing):
     words = {"formula": "1 - a*u", "text": "Φ = 1 − aU′"}
     kind = type("Own", (Law,), {key: value for key, value in words.items() if key != missing})
-    with pytest.raises(ValueError, match=f"{missing}: missing"):
+    with refused(f"test_refused.{missing}"):
         kind(0.1)
     unused = type("Own", (Law,), {**words, "defaults": {"c": 0.5}})
-    with pytest.raises(ValueError, match="c: not in the formula"):
+    with refused("test_refused.c"):
         unused(0.1)
 
 
@@ -152,7 +155,7 @@ def test_a_run_ends_at_the_limit_of_its_law():
     ],
 )
 def test_names_of_settings_are_shown_in_a_line(call):
-    with refused("'foo\\nbar': "):
+    with refused("'foo\\nbar'"):
         call()
 
 
@@ -162,7 +165,7 @@ def test_names_of_folders_are_shown_in_a_line(tmp_path, content):
     if content is not None:
         folder.mkdir()
         (folder / "study.json").write_text(content)
-    with refused("a\\nb", "not "):
+    with refused("a\\nb" if content is None else "a\\nb/study.json"):
         open_study(folder)
 
 
@@ -171,5 +174,5 @@ def test_a_search_without_initial_states_is_refused():
         lambda: find_attractors("linearized", 0.1, samples=0),
         lambda: find_attractors(MODEL, SearchSettings(samples=0)),
     ):
-        with refused("samples: got 0, expected 1 or more, or initial states in starts"):
+        with refused("samples: 0"):
             call()

@@ -30,6 +30,7 @@ from burridge_knopoff import (
 )
 from burridge_knopoff.basins.settings import BasinSettings
 from tests.library.test_wrong_types import CALLS, DROPPING, MODEL, QUICK, REST
+from tests.refused import refused
 
 POSITION, VELOCITY = [-0.9, -1.1, -0.95], [0.1, 0.11, 0.12]
 STATES = [POSITION, VELOCITY]
@@ -195,13 +196,13 @@ def test_what_is_none_is_refused_in_a_short_line(argument):
     """The line has no more than the beginning of the value."""
     values, call = {**NUMBERS, **THINGS}.get(argument, (ENDS, REFUSALS.get(argument)))
     for kind, convert in REFUSED.items():
-        with pytest.raises(ValueError, match=r": got [^\n]{1,180}, expected |: unknown key") as caught:
+        with pytest.raises(ValueError, match=r"^[^\n:]+: [^\n]+$") as caught:
             call(convert(values))
         assert len(str(caught.value)) < 280, kind
 
 
 @pytest.mark.parametrize("value", [(i for i in ()), map(abs, ()), iter([1.0])])
 def test_messages_have_no_addresses(value):
-    with pytest.raises(ValueError, match=r"^position: got an? (generator|map|list_iterator), expected") as caught:
+    with refused("position") as caught:
         InitialState("own", value, 0.1)
     assert "0x" not in str(caught.value)

@@ -41,22 +41,22 @@ def test_an_initial_state_with_a_name():
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        (POSITION, "or (position, velocity)"),
-        (3, "initial: got 3, expected"),
-        (np.array(1.0), "initial: got array(1.), expected"),
-        (("minus", "plus"), "or (position, velocity)"),
-        ({"positon": POSITION, "velocity": VELOCITY}, "initial.positon: unknown key"),
-        ({"position": POSITION}, "initial.velocity: missing"),
-        ({"position": POSITION, "velocity": VELOCITY[:2]}, "got 2 numbers, expected 3 for as many positions"),
+        (POSITION, "initial"),
+        (3, "initial: 3"),
+        (np.array(1.0), "initial: array(1.)"),
+        (("minus", "plus"), "initial"),
+        ({"positon": POSITION, "velocity": VELOCITY}, "initial.positon"),
+        ({"position": POSITION}, "initial.velocity"),
+        ({"position": POSITION, "velocity": VELOCITY[:2]}, "velocity"),
         ((POSITION, [0.1, "x", 0.1]), "initial.velocity[1]: 'x'"),
         ((POSITION, [0.1, float("nan"), 0.1]), "initial.velocity[1]: nan"),
-        ((POSITION, [0.1, -0.1, 0.1]), "one_sided"),
+        ((POSITION, [0.1, -0.1, 0.1]), "velocity: -0.1"),
         ({"name": "plus", "position": POSITION, "velocity": VELOCITY}, "initial.name: 'plus'"),
         (InitialState("minus", tuple(POSITION), tuple(VELOCITY)), "initial.name: 'minus'"),
     ],
 )
 def test_a_bad_initial_state_is_refused_in_one_line(given, words):
-    with refused(words, match="got .*expected|unknown key|missing"):
+    with refused(words):
         simulate("linearized", 0.08, given)
 
 
@@ -79,12 +79,12 @@ def test_settings_may_be_given_in_both_ways():
 )
 def test_arguments_that_a_model_already_has_are_refused(options):
     """They would have no effect, even if the given value is the default of a law."""
-    with pytest.raises(ValueError, match="got some together with a model"):
+    with refused("a, chain, v, contact"):
         simulate(MODEL, initial="plus", **options)
 
 
 def test_other_objects_in_place_of_settings_are_refused():
-    with pytest.raises(ValueError, match="settings: got 'plus', expected"):
+    with refused("settings: 'plus'"):
         simulate("linearized", 0.08, "minus", "plus")
 
 

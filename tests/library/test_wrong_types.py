@@ -246,7 +246,7 @@ def test_a_number_that_is_none_is_refused(name, argument, value):
     "ends", [(math.nan, 1.0), (0.0, math.nan), (2.0, 1.0), ("x", 1.0), (None, 1.0), (True, 2.0), (1.0,), 0.5]
 )
 def test_ends_that_are_no_interval_are_refused(name, argument, ends):
-    with refused(match=f"^{argument}.*: got .*, expected"):
+    with refused(argument):
         getattr(burridge_knopoff, name)(**{**CALLS[name], argument: ends})
 
 

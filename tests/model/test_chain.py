@@ -82,35 +82,32 @@ def test_the_chain_of_the_paper():
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        *(({"blocks": blocks}, f"blocks: got {blocks}, expected") for blocks in (0, -3, 2_000_000)),
-        *(({"blocks": blocks}, f"blocks: got {blocks}, expected a whole number") for blocks in (2.0, True)),
+        *(({"blocks": blocks}, f"chain.blocks: {blocks}") for blocks in (0, -3, 2_000_000)),
+        *(({"blocks": blocks}, f"chain.blocks: {blocks}") for blocks in (2.0, True)),
         ({"ends": "loose"}, "chain.ends: 'loose'"),
-        *(
-            ({key: [0.1]}, f"chain.{key}: got a list of 1 number, expected a number, or a list of 2: one per spring")
-            for key in ("coupling", "damping")
-        ),
+        *(({key: [0.1]}, f"chain.{key}") for key in ("coupling", "damping")),
         (
             {"pulling_damping": [0.1]},
-            "chain.pulling_damping: got a list of 1 number, expected a number, or a list of 3: one per",
+            "chain.pulling_damping",
         ),
-        ({"grid": [1, 3], "damping": [0.1]}, "chain.damping: got a list of 1 number, expected one together with"),
-        ({"coupling": [1.0, 1.0], "ends": "ring"}, "chain.coupling: got 2 numbers, expected 1, or 3"),
-        ({"threshold": [1.0, 2.0]}, "chain.threshold: got 2 numbers, expected 1, or 3"),
-        ({"pulling": "all"}, "chain.pulling: got 'all', expected neighbours or 0 or a number"),
-        ({"threshold": 0.0}, "chain.threshold: got 0.0, expected"),
-        ({"coupling": -1.0}, "chain.coupling: got -1.0, expected"),
-        ({"pulling": [1.0, float("nan"), 1.0]}, "chain.pulling[1]: got nan, expected"),
-        ({"coupling": True}, "chain.coupling: got True, expected"),
-        ({"pulling": 0.0}, "chain.pulling: got 0.0, expected a number above 0 for at least one block"),
-        ({"pulling": [0, 0, 0]}, "chain.pulling: got (0.0, 0.0, 0.0), expected"),
-        ({"pulling": 1e-7}, "chain.pulling: got 1e-07, expected neighbours or 0 or a number between 1e-06"),
+        ({"grid": [1, 3], "damping": [0.1]}, "chain.damping"),
+        ({"coupling": [1.0, 1.0], "ends": "ring"}, "chain.coupling"),
+        ({"threshold": [1.0, 2.0]}, "chain.threshold"),
+        ({"pulling": "all"}, "chain.pulling: 'all'"),
+        ({"threshold": 0.0}, "chain.threshold: 0.0"),
+        ({"coupling": -1.0}, "chain.coupling: -1.0"),
+        ({"pulling": [1.0, float("nan"), 1.0]}, "chain.pulling[1]: nan"),
+        ({"coupling": True}, "chain.coupling: True"),
+        ({"pulling": 0.0}, "chain.pulling: 0.0"),
+        ({"pulling": [0, 0, 0]}, "chain.pulling: (0.0, 0.0, 0.0)"),
+        ({"pulling": 1e-7}, "chain.pulling: 1e-07"),
         (
             {"pulling": (1e-7, 0.0, 1e-8)},
-            "chain.pulling: got (1e-07, 0.0, 1e-08), expected a number above 0 for at least",
+            "chain.pulling: (1e-07, 0.0, 1e-08)",
         ),
-        ({"pulling": (1.0, 1e-31, 1.0)}, "chain.pulling[1]: got 1e-31, expected 0 or a number between 1e-30 and 1e+06"),
-        ({"damping": 1e-31}, "chain.damping: got 1e-31, expected 0 or a number between 1e-30 and 1e+06"),
-        ({"blocks": 1, "ends": "ring"}, "chain.ends: got ring, expected open for one block"),
+        ({"pulling": (1.0, 1e-31, 1.0)}, "chain.pulling[1]: 1e-31"),
+        ({"damping": 1e-31}, "chain.damping: 1e-31"),
+        ({"blocks": 1, "ends": "ring"}, "chain.ends: ring"),
     ],
 )
 def test_refused(options, message):
@@ -121,12 +118,12 @@ def test_refused(options, message):
 @pytest.mark.parametrize(
     ("blocks", "values", "message"),
     [
-        (2, [0.1, 0.2], "chain.damping: got 2 numbers, expected 1"),
-        (1, [0.1], "chain.damping: got a list of 1 number, expected a number"),
+        (2, [0.1, 0.2], "chain.damping"),
+        (1, [0.1], "chain.damping"),
     ],
 )
 def test_a_list_for_fewer_than_two_springs_is_refused(blocks, values, message):
-    with pytest.raises(ValueError, match=f"^{message}$"):
+    with refused(message):
         Chain(blocks, damping=values)
 
 
@@ -135,17 +132,18 @@ def test_a_list_for_fewer_than_two_springs_is_refused(blocks, values, message):
 def test_forces_on_anything_that_numpy_reads(chain):
     """A matrix of numpy is a table of numbers like any other."""
     values = np.array([[-0.9, -1.1, -1.0], [0.3, 0.1, 0.2]])
-    for force in (chain.force, lambda values: chain.damping_force(values, 0.1)):
+    forces = {"position": chain.force, "velocity": lambda values: chain.damping_force(values, 0.1)}
+    for key, force in forces.items():
         expected = force(values)
         assert np.array_equal(expected, np.array([force(row) for row in values]))
         for form in (np.matrix(values), values.tolist(), np.ma.masked_array(values)):
-            forces = force(form)
-            assert type(forces) is np.ndarray
-            assert np.array_equal(forces, expected)
+            result = force(form)
+            assert type(result) is np.ndarray
+            assert np.array_equal(result, expected)
         for form in (values[:, :2], np.matrix(values).T, 1.0, []):
-            with refused("expected shape (…, 3): one number per block on the last axis"):
+            with refused(key, "(…, 3)"):
                 force(form)
-        with refused("expected an array of numbers"):
+        with refused(f"{key}: 'far'"):
             force("far")
 
 

@@ -50,10 +50,10 @@ def test_initial_state_by_name_or_numbers():
     plus = PAPER_STATES["plus"]
     assert initial_state("plus", plus.position, plus.velocity) == as_numbers(plus)
     for name, meant in (("Plus", "plus"), ("plsu", "plus"), ("MINUS", "minus"), ("mins", "minus")):
-        with refused(f"initial: {name!r}, expected minus | plus (did you mean {meant}?), or both"):
+        with refused(f"initial: {name!r}", f"{meant}?"):
             initial_state(name)
     for numbers in ({}, {"position": (1.0, 2.0)}, {"velocity": (1.0, 2.0)}):
-        with refused("initial: 'own', expected minus | plus, or both position and velocity"):
+        with refused("initial: 'own'"):
             initial_state("own", **numbers)
 
 
@@ -125,15 +125,15 @@ def test_own_numbers_are_taken_as_they_are_under_any_name():
     for form in (as_numbers(plus), {"name": "plus", "position": plus.position, "velocity": plus.velocity}):
         stored = simulate("linearized", 0.08, form, v=0.2, transient=0.0, window=1.0).to_dataset()
         assert stored["initial_position"].values.tolist() == list(plus.position)
-    with refused("initial.name: 'plus', expected another name"):
+    with refused("initial.name: 'plus'"):
         simulate("linearized", 0.08, {"name": "plus", "position": plus.position, "velocity": (0.1, 0.1, 0.1)})
 
 
 @pytest.mark.parametrize("kind", [InitialState, PaperState])
 @pytest.mark.parametrize("last", [float("nan"), 1e7, 10**400, "1", None])
 def test_refused(kind, last):
-    with pytest.raises(ValueError, match="position"):
+    with refused("position"):
         kind("bad", (0.0, last), (0.1, 0.1))
     for velocity in ((0.1,), (0.1, True)):
-        with pytest.raises(ValueError, match="velocity"):
+        with refused("velocity"):
             kind("bad", (0.0, 0.0), velocity)

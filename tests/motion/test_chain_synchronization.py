@@ -24,6 +24,7 @@ from burridge_knopoff.motion.mirror import symmetrized
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from tests.motion.chains import SAMPLE, model, two_block_exponent
+from tests.refused import refused
 
 APART = Outcome.NOT_SYNCHRONIZED
 
@@ -235,7 +236,7 @@ def test_a_chain_without_mirror_blocks_is_refused():
         lambda: watch_state(Runner(chain), state),
         lambda: chains.watch_chain([chain], [0.05]),
     ):
-        with pytest.raises(ValueError, match=r"^chain: .*mirror"):
+        with refused("chain", "mirror"):
             call()
 
 

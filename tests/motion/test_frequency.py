@@ -328,9 +328,9 @@ def test_uniform_sliding_has_no_frequency():
 def test_a_duration_that_cannot_be_kept_is_refused():
     model = Model(Chain(300), law_of("linearized", 0.06))
     state = ChainState(np.zeros(300), np.full(300, model.v), np.zeros(300, bool))
-    with refused("duration: 1000000.0", match="expected a shorter one"):
+    with refused("duration: 1000000.0"):
         block_frequencies(model, state, 1e6)
-    with refused("duration: 0", match="expected a number above 0"):
+    with refused("duration: 0"):
         block_frequencies(model, state, 0)
 
 
@@ -338,6 +338,6 @@ def test_the_motion_of_a_run_that_diverges_is_refused():
     """Its frequencies were once NaN, like those of a block without cycles."""
     model = Model(Chain(3), law_of("linearized", 2.5), 0.1, "symmetric")
     start = model.begin(InitialState("own", (-1.0, -0.5, -0.8), (0.1, 0.0, 0.2)))
-    ended = "the run did not complete: diverged at tau = 12.1"
-    with pytest.raises(ValueError, match=rf"^duration: got 100\.0, expected a shorter one: {ended}"):
+    ended = "diverged at tau = 12.1"
+    with refused("duration: 100.0", ended):
         block_frequencies(model, start, 100.0)

@@ -199,12 +199,12 @@ def test_the_share_of_a_mode_does_not_decide_at_unequal_amplitudes(moving, expec
 def test_a_state_or_a_chain_that_does_not_fit_is_refused():
     model = Model(Chain(3), law_of("linearized", 0.06))
     state = ChainState(np.zeros(3), np.full(3, model.v), np.zeros(3, bool))
-    with refused("duration: 0", match="expected a number above 0"):
+    with refused("duration: 0"):
         mode_amplitudes(model, state, 0)
-    with refused("state", match="ChainState of 4 blocks"):
+    with refused("state", "4 blocks"):
         mode_amplitudes(Model(Chain(4), law_of("linearized", 0.06)), state)
     long = Model(Chain(20_000), law_of("linearized", 0.06))
-    with refused("model.blocks: 20000", match="at most 10000"):
+    with refused("model.blocks: 20000"):
         mode_amplitudes(long, state)
 
 
@@ -218,5 +218,5 @@ def test_a_line_without_motion_or_beyond_the_sampling_has_no_shares():
     highest = 0.5 / modes.time[1]
     assert modes.line(0.999 * highest).shape == (3,)
     for method in (modes.line, modes.line_shares):
-        with refused("frequency: ", match="expected a number between 0 and"):
+        with refused("frequency"):
             method(1.001 * highest)

@@ -11,6 +11,7 @@ from burridge_knopoff.periodic_orbits.following import ContinuationSettings
 from burridge_knopoff.periodic_orbits.parameter_line import line_along_a
 from burridge_knopoff.periodic_orbits.pseudo_arclength import begin_branch
 from tests.normal_forms import CRITICAL, border_collision, fold, on_line, orbit_at, pitchfork
+from tests.refused import refused
 
 LINE = line_along_a(Chain(2))
 
@@ -85,7 +86,7 @@ def test_a_branch_must_begin_within_its_interval():
     orbit = limit_cycle(SLOW, synchronized_orbit(SLOW).reference)
     for a_range in ((0.08, 0.08), (0.08, 0.09), (0.07, 0.08)):
         assert follow(orbit, a_range, ContinuationSettings(max_orbits=1))[0].orbit is orbit
-    with pytest.raises(ValueError, match=r"^interval: got \(0\.09, 0\.07\), expected \(low, high\) with low ≤ high$"):
+    with refused("interval: (0.09, 0.07)"):
         follow(orbit, (0.09, 0.07))
 
 

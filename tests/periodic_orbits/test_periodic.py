@@ -12,6 +12,7 @@ from burridge_knopoff.periodic_orbits.periodic import find_periodic_orbit, refin
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap, allowed_directions
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
+from tests.refused import refused
 
 SYNCHRONIZED, SYMMETRIC, ASYMMETRIC = Symmetry
 PAPER, UNEVEN = Chain(3), Chain(3, coupling=(1.0, 2.0))
@@ -110,7 +111,7 @@ def test_uniform_sliding_is_not_an_orbit(families, law):
     """Uniform sliding returns after any time; Newton's method reaches it from a guess that returns too early."""
     model = families[law].at(0.08).model
     nearly = ChainState(np.array([1e-4, -1e-4, 1e-4]), np.full(3, model.v), np.zeros(3, dtype=bool))
-    with pytest.raises(OrbitError, match="no block stops there"):
+    with pytest.raises(OrbitError, match="no block stops"):
         find_periodic_orbit(model, nearly, 1e-6, SYNCHRONIZED)
 
 
@@ -163,13 +164,13 @@ def test_an_orbit_starts_at_the_first_stop_of_a_block(orbits):
 
 def test_guesses_that_do_not_lead_to_an_orbit_are_refused(orbits):
     orbit = orbits["asymmetric"]
-    with pytest.raises(OrbitError, match=r"a = 0\.12: no periodic orbit found near the guess"):
+    with refused("a = 0.12", "near", error=OrbitError):
         find_periodic_orbit(orbit.model, orbit.reference, 0.37 * orbit.period, ASYMMETRIC)
-    with pytest.raises(ValueError, match="symmetry: got 'symmetric', expected"):
+    with refused("symmetry: 'symmetric'"):
         find_periodic_orbit(orbits["uneven"].model, orbit.reference, orbit.period, SYMMETRIC)
-    with pytest.raises(OrbitError, match="it never stops"):
+    with pytest.raises(OrbitError, match="never stops"):
         orbits["symmetric"].start(1)
-    with pytest.raises(OrbitError, match=r"a = 0\.12: no periodic orbit found within 20"):
+    with refused("a = 0.12", "within 20", error=OrbitError):
         limit_cycle(orbit.model, orbit.reference, window=20.0)
 
 

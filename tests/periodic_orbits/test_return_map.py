@@ -10,6 +10,7 @@ from burridge_knopoff.periodic_orbits.parameter_line import line_along_a
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from tests.normal_forms import CRITICAL, TWO, MapModel, NormalForm, on_line
+from tests.refused import refused
 
 #: The friction at the start of a slip is a, which must not exceed 1.
 LAW = FormulaLaw(1.0, "a/(1 + 0.08*u)", name="own")
@@ -75,5 +76,5 @@ def test_the_step_of_the_derivative_by_a_becomes_as_short_as_the_range_of_the_ev
     if width > 1e-13:
         assert derivative_at(0.0, form) == pytest.approx(1.0, rel=1e-6)
     else:
-        with pytest.raises(OrbitError, match=r"^a = 0\.1: stops and starts change"):
+        with refused("a = 0.1", error=OrbitError):
             derivative_at(0.0, form)

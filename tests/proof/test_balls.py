@@ -28,7 +28,7 @@ def test_limits_contain_both_ends_of_a_wide_ball():
 
 
 def test_a_number_without_a_bound_is_refused():
-    with pytest.raises(ProofError, match="got nan, expected a finite ball"):
+    with pytest.raises(ProofError, match="nan"):
         limits(arb("nan"))
 
 

@@ -56,7 +56,7 @@ def test_the_multiplier_passes_1_at_a_c(critical_orbit, family):
 def test_a_guess_far_from_a_c_is_refused(family):
     """Newton's method may converge to anything from there, but Krawczyk's operator rejects it."""
     arcs, guess = arcs_of(family.at(0.2))
-    with pytest.raises(ProofError, match="expected it in the interior of"):
+    with pytest.raises(ProofError, match="^unknown"):
         enclose(equations(arcs, critical=True), [*map(arb, guess), arb(0.2)], [1e-3] * 7)
 
 
@@ -85,7 +85,7 @@ def test_the_family_contains_the_orbits_in_double_precision(branch, family):
 def test_an_orbit_of_another_a_is_not_in_the_family(branch, family):
     for a, piece, at in ((0.09, branch[0], branch[0].orbit.a.mid()), (0.0861, branch[-1], arb(0.0861))):
         other = prove_orbit(family.at(a), arb(a)).enclosure
-        with pytest.raises(ProofError, match="not proved to be an orbit of the family"):
+        with pytest.raises(ProofError, match="family"):
             piece.check_contains(other, at)
 
 
@@ -111,5 +111,5 @@ def test_every_pair_of_neighbours_is_joined(branch, family, monkeypatch):
 def test_a_range_beyond_the_order_of_events_is_refused(family, monkeypatch):
     """At 0.0757 all three blocks start at the same time; the family continues with other arcs."""
     monkeypatch.setattr(critical, "MAX_HALVINGS", 3)
-    with pytest.raises(ProofError, match=r"a = 0\.075\d*: not proved: block 2|blocks 1 and 3|unknown"):
+    with pytest.raises(ProofError, match=r"a = 0\.075\d*:.*(block|unknown)"):
         prove_branch(family.at(0.0765), fmpq(75, 1000), fmpq(76, 1000))

@@ -42,12 +42,12 @@ def test_a_solution_is_enclosed_and_the_only_one_in_its_box():
 @pytest.mark.parametrize(("middle", "radius"), [(1.0, 2.5), (1.5, 0.2), (1.3, 0.2), (1.0, 1.5)])
 def test_boxes_without_a_provable_single_solution_are_refused(middle, radius):
     """Boxes with both solutions, with none, with one nearby, and one box too wide for the proof."""
-    with pytest.raises(ProofError, match=r"unknown \d: got .*, expected it in the interior of "):
+    with pytest.raises(ProofError, match=r"^unknown \d:"):
         enclose(circle_and_line, [arb(middle)] * 2, [radius] * 2)
 
 
 def test_a_double_solution_is_refused():
-    with pytest.raises(ProofError, match="cannot be inverted"):
+    with pytest.raises(ProofError, match="inverted"):
         enclose(lambda unknown: [unknown[0] * unknown[0]], [arb(0)], [0.1])
     with pytest.raises(ProofError):
         enclose_widest(lambda unknown: [unknown[0] * unknown[0]], [arb(1e-30)], [0.1, 1e-6])
@@ -88,7 +88,7 @@ def test_a_guess_is_refined_to_all_digits():
     with arithmetic():
         assert abs(root - arb(2).sqrt()) < 1e-55
     assert float(root) == math.sqrt(2.0)
-    with pytest.raises(ProofError, match="cannot be inverted"):
+    with pytest.raises(ProofError, match="inverted"):
         refine_guess(root_of, [0.0], [arb(2)])
 
 
@@ -97,5 +97,5 @@ def test_equations_whose_matrix_may_be_singular_are_refused():
         solution = solve_linear(arb_mat([[2, 0], [0, arb(1, 0.5)]]), arb_mat([[1], [1]]))
         assert solution[1, 0].contains(arb(2))
         assert solution[1, 0].contains(arb(2) / 3)
-        with pytest.raises(ProofError, match="cannot be inverted"):
+        with pytest.raises(ProofError, match="inverted"):
             solve_linear(arb_mat([[1, 1], [1, arb(1, 1e-30)]]), arb_mat([[1], [2]]))

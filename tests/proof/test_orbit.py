@@ -20,6 +20,7 @@ from burridge_knopoff.proof.orbit import POSITIONS, arcs_of, equations, follow_a
 from tests.periodic_orbits.exact import slipping_state
 from tests.proof.conftest import changed, holds
 from tests.proof.exact import exact_orbit
+from tests.refused import refused
 
 
 def prove_at(family, a):
@@ -124,7 +125,7 @@ def test_bounds_of_speed_and_force_agree_with_a_run(proved, family):
 def test_a_wrong_guess_is_refused(family):
     arcs, guess = arcs_of(family.at(0.08))
     for shift, radius in ((0.01, 0.005), (0.0, 0.1)):
-        with pytest.raises(ProofError, match="expected it in the interior of"):
+        with pytest.raises(ProofError, match="^unknown"):
             enclose(equations(arcs), [arb(value + shift) for value in guess], [radius] * len(guess), [arb(0.08)])
 
 
@@ -138,17 +139,17 @@ def test_a_ball_of_a_that_is_too_wide_is_refused(family):
     [
         (1, 0.0, None),
         # Blocks 1 and 3 have stopped before the end of their arc, or do not stop there.
-        (1, 1e-9, "blocks 1 and 3, the arc until blocks 1 and 3 stop: not proved to keep sticking or slipping"),
-        (1, -1e-9, "blocks 1 and 3, the arc until blocks 1 and 3 stop: not proved to keep sticking or slipping"),
-        (2, -0.01, "block 2, the arc until block 2 stop: .* no root at its end"),
+        (1, 1e-9, "blocks 1 and 3, the arc until blocks 1 and 3 stop"),
+        (1, -1e-9, "blocks 1 and 3, the arc until blocks 1 and 3 stop"),
+        (2, -0.01, "block 2, the arc until block 2 stop"),
         # Block 2 would have stopped, and slipped back, before the end of its arc.
-        (2, 0.1, "block 2, the arc until block 2 stop: not proved to keep sticking or slipping"),
+        (2, 0.1, "block 2, the arc until block 2 stop"),
         # Blocks 1 and 3 would have started earlier.
-        (3, 0.1, "blocks 1 and 3, the arc until block 2 start: not proved to keep sticking or slipping"),
+        (3, 0.1, "blocks 1 and 3, the arc until block 2 start"),
     ],
 )
 def test_the_true_arcs_are_certified_and_changed_ones_are_not(proved, arc, late, message):
-    with pytest.raises(ProofError, match=message) if message else nullcontext():
+    with refused(message, error=ProofError) if message else nullcontext():
         changed(proved, arc, late).check_arcs()
 
 
@@ -168,18 +169,18 @@ def test_an_arc_on_which_the_other_block_stops_is_not_certified(proved):
         assert least(-1.0) < 0.0 < least(0.0)
         rest = bisect(least, -1.0, 0.0, xtol=1e-7)
         check_positive(margin(rest + 1e-3), arb(2))
-        with pytest.raises(ProofError, match="it may vanish there"):
+        with pytest.raises(ProofError, match="vanish"):
             check_positive(margin(rest - 1e-3), arb(2))
 
 
 @pytest.mark.parametrize("a", [0.01, 0.04])
 def test_an_orbit_on_which_not_all_blocks_stick_at_once_is_not_covered(family, a):
     """At 0.01 block 2 never stops; at 0.04 it stops only after blocks 1 and 3 have started."""
-    with pytest.raises(ProofError, match=rf"a = {a}: not covered: expected all blocks to stick at once"):
+    with refused(f"a = {a}", "stick", error=ProofError):
         prove_orbit(family.at(a), arb(a))
 
 
 def test_another_law_than_the_papers_is_refused():
     other = synchronized_orbits(Model(Chain(3), law_of("exponential", 0.0))).at(0.08)
-    with pytest.raises(ProofError, match=r"law exponential: got .*, expected 1 - a\*u \| 1/\(1 \+ a\*u\)"):
+    with refused("law exponential", error=ProofError):
         prove_orbit(other, arb(0.08))

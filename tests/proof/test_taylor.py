@@ -18,6 +18,7 @@ from burridge_knopoff.proof.krawczyk import derivatives
 from burridge_knopoff.proof.orbit import POSITIONS, follow_arcs, prove_orbit
 from burridge_knopoff.proof.taylor import Nonlinear
 from tests.proof.conftest import SLIPS, changed, holds, state_of
+from tests.refused import refused
 
 V, A = "0.1", "0.09"
 
@@ -125,11 +126,11 @@ def test_as_v_falls_to_0_the_law_is_the_linearized_one():
 @pytest.mark.parametrize(
     ("speed", "time", "message"),
     [
-        (arb(0, 1000), arb(1), "1 \\+ aU': got .*, expected above 0"),
-        (arb("nan"), arb(1), "expected|no box"),
-        (arb(0), arb(1000), "time: got .*, expected 0 to 100"),
-        (arb(0), arb("nan"), "time: got nan, expected 0 to 100"),
-        (arb(0), arb(-1), "time: got -1.*, expected 0 to 100"),
+        (arb(0, 1000), arb(1), "^1 \\+ aU':"),
+        (arb("nan"), arb(1), "nan|step"),
+        (arb(0), arb(1000), "^time:"),
+        (arb(0), arb("nan"), "^time:.*nan"),
+        (arb(0), arb(-1), "^time:.*-1"),
     ],
 )
 def test_unbounded_motion_is_refused(speed, time, message):
@@ -140,12 +141,12 @@ def test_unbounded_motion_is_refused(speed, time, message):
 def test_a_step_that_no_box_encloses_is_refused(monkeypatch):
     """Over so long a time Picard's operator maps no box into itself."""
     monkeypatch.setattr(taylor, "STEP", fmpq(3, 2))
-    with pytest.raises(ProofError, match=r"step 1 of an arc: found no box|1 \+ aU': got"):
+    with pytest.raises(ProofError, match=r"^step 1 of an arc:|^1 \+ aU':"):
         law().path((True, True), state_of((True, True))[0], arb(A))(arb(1))
     # The first box is wide, but its image is not contained in it.
     monkeypatch.setattr(taylor, "STEP", fmpq(3, 4))
     monkeypatch.setattr(taylor, "WIDENINGS", 1)
-    with pytest.raises(ProofError, match=r"step 1 of an arc: found no box that contains the motion"):
+    with refused("step 1 of an arc", error=ProofError):
         law().path((True, True), state_of((True, True))[0], arb(A))(arb("0.5"))
 
 
@@ -195,7 +196,7 @@ def test_a_c_agrees_with_an_integration_of_25_digits(critical_orbit):
 @pytest.mark.slow
 def test_a_wrong_arc_is_not_certified(critical_orbit):
     wrong = changed(critical_orbit.orbit, 3, arb("0.1"))
-    with pytest.raises(ProofError, match="blocks 1 and 3, the arc until block 2 start: not proved to keep sticking"):
+    with refused("blocks 1 and 3, the arc until block 2 start", error=ProofError):
         wrong.check_arcs()
     assert len(follow_arcs(wrong.arcs, [*wrong.enclosure.inner, wrong.a])[0]) == 5
 

@@ -23,6 +23,7 @@ from burridge_knopoff.provenance.files import (
     write_text,
     write_whole,
 )
+from tests.refused import refused
 
 
 def test_a_failed_write_keeps_the_previous_file(tmp_path):
@@ -34,7 +35,7 @@ def test_a_failed_write_keeps_the_previous_file(tmp_path):
             file.write("half")
         raise RuntimeError("NetCDF: HDF error")
 
-    with pytest.raises(OSError, match=r"result\.txt: cannot be written: NetCDF: HDF error \(the disk is not full"):
+    with refused("result.txt", "HDF error", "not full", error=OSError):
         write_whole(path, fail)
     assert path.read_text() == "old"
     assert [item.name for item in tmp_path.iterdir()] == ["result.txt"]
@@ -49,7 +50,7 @@ def test_a_full_disk_is_reported(tmp_path, error):
         os.symlink("/dev/full", name)
         raise error
 
-    with pytest.raises(OSError, match="a.nc: cannot be written: No space left on device$"):
+    with refused("a.nc", "No space left", error=OSError):
         write_whole(tmp_path / "a.nc", fail)
 
 
@@ -63,7 +64,7 @@ def test_a_disk_with_a_little_room_is_full(tmp_path):
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 16, limits[1]))
     try:
-        with pytest.raises(OSError, match="a.nc: cannot be written: File too large$"):
+        with refused("a.nc", "File too large", error=OSError):
             write_whole(tmp_path / "a.nc", fail)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
@@ -125,23 +126,23 @@ def test_two_writers_of_one_file(tmp_path):
 
 
 def test_a_writer_that_makes_no_file(tmp_path):
-    with pytest.raises(OSError, match=r"a\.txt: cannot be written: No such file or directory"):
+    with refused("a.txt", error=OSError):
         write_whole(tmp_path / "a.txt", lambda name: None)
 
 
 def test_folders_that_cannot_be_written_to(tmp_path):
     (tmp_path / "file").touch()
     (tmp_path / "link").symlink_to("nowhere")
-    for path, words in (("file", "file is not a folder"), ("link", "link is a link to nowhere, which does not exist")):
+    for path in ("file", "link"):
         for below in (path, f"{path}/study"):
             for check in (nearest_folder, check_folder, partial(check_folder, inside=True)):
-                with pytest.raises(OSError, match=f"^{re.escape(str(tmp_path))}/{words}$"):
+                with pytest.raises(OSError, match=f"^{re.escape(str(tmp_path / path))} "):
                     check(tmp_path / below)
-    with pytest.raises(OSError, match="x.nc: cannot be written: .*file is not a folder$"):
+    with refused("x.nc", str(tmp_path / "file"), error=OSError):
         check_target(tmp_path / "file" / "x.nc")
     assert nearest_folder(tmp_path / "not" / "there") == tmp_path
     check_folder(tmp_path / "not" / "there", inside=True)
-    with pytest.raises(OSError, match=r"^/proc/self is a folder that cannot be written to: "):
+    with pytest.raises(OSError, match="^/proc/self "):
         check_folder("/proc/self/results")
 
 
@@ -165,7 +166,7 @@ def test_a_link_to_anything_but_a_file_is_refused(tmp_path, target):
     """Otherwise the link /dev/stdout of the system could be replaced."""
     (tmp_path / "folder").mkdir()
     (tmp_path / "link").symlink_to(target)
-    with pytest.raises(OSError, match="link: cannot be written: it is "):
+    with refused(str(tmp_path / "link"), error=OSError):
         write_text(tmp_path / "link", "whole")
     assert (tmp_path / "link").is_symlink()
 

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from burridge_knopoff.figures.style import write_figure
 from burridge_knopoff.provenance.bad_file import BadFile
 from burridge_knopoff.provenance.whole import check_whole
+from tests.refused import refused
 
 TEXTS = {
     "claims.json": '{"claims": [1, "–"]}\n',
@@ -44,7 +45,7 @@ def test_a_cut_file_is_corrupt(contents, tmp_path, name):
     end = len(content.rstrip())
     for size in {*range(1, min(end, 200)), *range(1, end, max(end // 50, 1)), *range(max(end - 20, 1), end)}:
         path.write_bytes(content[:size])
-        with pytest.raises(BadFile, match="is cut, or not ") as caught:
+        with refused(str(path), error=BadFile) as caught:
             check_whole(path)
         assert caught.value.kind == "corrupt"
 
@@ -52,11 +53,11 @@ def test_a_cut_file_is_corrupt(contents, tmp_path, name):
 @pytest.mark.parametrize("name", NAMES)
 def test_an_empty_or_missing_file_is_refused(tmp_path, name):
     path = tmp_path / name
-    with pytest.raises(BadFile, match="is missing") as caught:
+    with refused(str(path), "missing", error=BadFile) as caught:
         check_whole(path)
     assert caught.value.kind == "missing"
     path.touch()
-    with pytest.raises(BadFile, match="is empty") as caught:
+    with refused(str(path), "empty", error=BadFile) as caught:
         check_whole(path)
     assert caught.value.kind == "corrupt"
 
@@ -65,7 +66,7 @@ def test_an_empty_or_missing_file_is_refused(tmp_path, name):
 @pytest.mark.parametrize("content", [b"\xff\xfe", b"some text\n", b"[" * 100_000, bytes(1000)])
 def test_a_file_of_another_format_is_corrupt(tmp_path, name, content):
     (tmp_path / name).write_bytes(content)
-    with pytest.raises(BadFile, match="is cut, or not "):
+    with refused(name, error=BadFile):
         check_whole(tmp_path / name)
 
 

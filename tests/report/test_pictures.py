@@ -10,6 +10,7 @@ from PIL import Image
 
 from burridge_knopoff.figures.palette import BRANCHES
 from burridge_knopoff.report.pictures import read_picture
+from tests.refused import refused
 
 
 def test_pictures_keep_their_size_and_their_colours(tmp_path):
@@ -35,5 +36,5 @@ def test_pictures_keep_their_size_and_their_colours(tmp_path):
 def test_a_picture_that_cannot_be_read_is_named(tmp_path, content):
     """For the second, another program would be started."""
     (tmp_path / "noise.png").write_bytes(content)
-    with pytest.raises(ValueError, match=r"noise\.png: is not a readable picture"):
+    with refused("noise.png"):
         read_picture(tmp_path / "noise.png")

@@ -54,5 +54,5 @@ def test_what_cannot_be_judged_is_put_by_its_reason(read):
 def test_what_is_no_file_of_verdicts_is_one_line(tmp_path, text):
     path = tmp_path / "claims.json"
     path.write_text(text)
-    with refused("claims.json: is not a file of verdicts"):
+    with refused("claims.json"):
         read_verdicts(path)

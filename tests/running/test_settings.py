@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, InitialState, Settings, simulate
-from burridge_knopoff.laws import LAWS
 from tests.refused import refused
 
 
@@ -16,25 +15,25 @@ from tests.refused import refused
         ({"window": 0.0}, "window: 0.0"),
         ({"transient": -1.0}, "transient: -1.0"),
         ({"batches": 1}, "batches: 1"),
-        ({"contact": "sticky"}, "one_sided | symmetric"),
-        ({"start": "soon"}, "moving | tested"),
-        ({"solver": "euler"}, "series | map | rk4"),
-        ({"events": "some"}, "none | window | all"),
-        ({"colour": "blue"}, "colour: not a setting"),
-        ({"law": "cubic"}, " | ".join(LAWS)),
-        ({"a": 2.0, "solver": "map"}, "not too steep"),
+        ({"contact": "sticky"}, "contact: 'sticky'"),
+        ({"start": "soon"}, "start: 'soon'"),
+        ({"solver": "euler"}, "solver: 'euler'"),
+        ({"events": "some"}, "events: 'some'"),
+        ({"colour": "blue"}, "colour"),
+        ({"law": "cubic"}, "law: 'cubic'"),
+        ({"a": 2.0, "solver": "map"}, "solver: 'map'"),
         ({"a": float("nan")}, "a: nan"),
-        ({"initial": "middle"}, "minus | plus"),
-        ({"law": "nonlinear", "solver": "map"}, "closed form"),
+        ({"initial": "middle"}, "initial: 'middle'"),
+        ({"law": "nonlinear", "solver": "map"}, "solver: 'map'"),
         ({"chain": Chain(4)}, "blocks: 4"),
-        ({"chain": 4}, "chain: got 4, expected a Chain"),
-        ({"law": 3}, "law: got 3, expected"),
+        ({"chain": 4}, "chain: 4"),
+        ({"law": 3}, "law: 3"),
         ({"a": "0.08"}, "a: '0.08'"),
-        ({"initial": InitialState("back", (0.0, 0.0), (0.1, -0.1))}, "one_sided"),
+        ({"initial": InitialState("back", (0.0, 0.0), (0.1, -0.1))}, "velocity: -0.1"),
     ],
 )
 def test_bad_input_is_refused_in_one_line(options, words):
-    with refused(words, match="expected|not known|not a setting"):
+    with refused(words):
         simulate(**options)
 
 
@@ -48,7 +47,7 @@ def test_a_run_that_would_store_too_much_is_refused_by_the_responsible_key(key, 
     """A sample of a trajectory has 2N + 1 numbers; the limit corresponds to a few GB."""
     run_settings = Settings(**{"transient": 0.0, "window": 1e5, **options})
     run_settings.check_chain(Chain(3))
-    with pytest.raises(ValueError, match=f"^{key}: .* numbers to store, not"):
+    with refused(key, "numbers to store"):
         run_settings.check_chain(Chain(60))
 
 
@@ -59,7 +58,7 @@ def test_steps_of_rk4_that_are_too_long_for_the_chain_are_refused():
     Settings(solver="rk4", step=0.1).check_chain(Chain(3))
     Settings(solver="series", step=1.0).check_chain(Chain(3))
     for chain, step in ((Chain(3), 0.11), (stiff, 0.04)):
-        with pytest.raises(ValueError, match=rf"^step: got {step}, expected at most 0\.\d+ in this chain"):
+        with refused(f"step: {step}"):
             Settings(solver="rk4", step=step).check_chain(chain)
 
 
@@ -73,7 +72,7 @@ def test_steps_of_rk4_that_are_too_long_for_the_chain_are_refused():
 def test_a_run_has_at_most_ten_million_samples(key, options):
     Settings(**options)
     longer = {name: value * (1.001 if value > 1.0 else 1.0) for name, value in options.items()}
-    with pytest.raises(ValueError, match=f"^{key}: got 0.0001, expected at least 0.00011 over a time of 1001, or a"):
+    with refused(f"{key}: 0.0001", "0.00011"):
         Settings(**longer)
     # What the message names is allowed.
     Settings(**{**longer, key: 0.00011})
@@ -81,7 +80,7 @@ def test_a_run_has_at_most_ten_million_samples(key, options):
 
 def test_a_chain_has_two_exponents_per_block():
     Settings(lyapunov_exponents=6).check_chain(Chain(3))
-    with pytest.raises(ValueError, match="^lyapunov_exponents: got 7, expected at most 6, two per block$"):
+    with refused("lyapunov_exponents: 7", "6"):
         Settings(lyapunov_exponents=7).check_chain(Chain(3))
 
 
@@ -90,7 +89,7 @@ def test_a_run_of_rk4_has_at_most_ten_billion_block_steps():
     options = {"transient": 1e5, "events": "none", "sampling": 1000.0}
     Settings(solver="rk4", step=1e-3, window=3.2e6, **options).check_chain(Chain(3))
     Settings(solver="series", step=1e-3, window=3.4e6, **options).check_chain(Chain(3))
-    with pytest.raises(ValueError, match=r"^step: got 0.001, expected at least 0.0011 in a run of 3.4e\+06, or a sh"):
+    with refused("step: 0.001", "0.0011"):
         Settings(solver="rk4", step=1e-3, window=3.3e6, **options).check_chain(Chain(3))
     Settings(solver="rk4", step=1.1e-3, window=3.3e6, **options).check_chain(Chain(3))
 
@@ -115,7 +114,7 @@ def test_a_run_stores_at_most_a_hundred_million_numbers_of_a_kind(key, fits, too
     """The chain has 40 blocks."""
     usual = {"transient": 0.0, "window": 1e3, "sampling": 1e3, "event_window": 1e3}
     Settings(**{**usual, **fits}).check_chain(Chain(40))
-    with pytest.raises(ValueError, match=f"^{key}: .* at most 1e[+]08 numbers to store, not 1.*$"):
+    with refused(key, "1e+08 numbers"):
         Settings(**{**usual, **too_long}).check_chain(Chain(40))
 
 

@@ -46,10 +46,10 @@ BEGUN = {
 @pytest.mark.parametrize(
     ("state", "message"),
     [
-        (ChainState(ZEROS, ZEROS, SLIPPING, math.nan), "state.time: got nan, expected a finite number"),
-        (ChainState(ZEROS, -ONES, SLIPPING), "state.velocity: got -1.0, expected at least 0 under contact one_sided"),
-        (ChainState(ZEROS, [0.0, 1.0, 1.0], STUCK), "state.velocity[1]: got 1.0, expected 0 because this block sticks"),
-        (ChainState(ZEROS, [0.0, np.nan, 0.0], SLIPPING), ": got nan, expected"),
+        (ChainState(ZEROS, ZEROS, SLIPPING, math.nan), "state.time: nan"),
+        (ChainState(ZEROS, -ONES, SLIPPING), "state.velocity: -1.0"),
+        (ChainState(ZEROS, [0.0, 1.0, 1.0], STUCK), "state.velocity[1]: 1.0"),
+        (ChainState(ZEROS, [0.0, np.nan, 0.0], SLIPPING), "state.velocity: nan"),
     ],
 )
 def test_states_that_cannot_occur_are_refused(begin, state, message):
@@ -59,12 +59,12 @@ def test_states_that_cannot_occur_are_refused(begin, state, message):
 
 @pytest.mark.parametrize("position", [[0.0, np.nan, 0.0], [0.0, 0.0, np.inf]])
 def test_positions_that_are_not_finite_are_refused(position):
-    with refused(f"state.position: got {np.sum(position)}, expected finite numbers"):
+    with refused(f"state.position: {np.sum(position)}"):
         record_events(MODEL, ChainState(np.array(position), ZEROS, STUCK), 5.0)
 
 
 def test_a_clock_that_is_not_a_number_is_refused():
-    with refused("state.time: got 'now', expected a finite number"):
+    with refused("state.time: 'now'"):
         Runner(MODEL).begin(ChainState(ZEROS, ZEROS, STUCK, "now"))
 
 
@@ -149,7 +149,7 @@ def test_blocks_on_soft_springs_are_farther_away_than_states_of_a_user_may_be():
     run = simulate(model, initial=rest, transient=0, window=50, lyapunov_exponents=0)
     assert run.status == "completed"
     assert simulate(model, initial=run.final, transient=0, window=50, lyapunov_exponents=0).status == "completed"
-    with refused("position[0]: ", "expected a number between -1e+06 and 1e+06"):
+    with refused("position[0]"):
         InitialState("own", tuple(run.final.position + model.sliding_offset), 0.0)
 
 

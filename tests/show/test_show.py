@@ -144,7 +144,7 @@ def test_a_summary_as_its_figure(study, tmp_path, capsys, name, words):
 def test_what_cannot_be_drawn_is_said_in_a_line(study, tmp_path, capsys):
     alone = shutil.copy(study / "summary/basins.nc", tmp_path)
     assert "its figure also needs attractors.nc" in output_of(capsys, alone, "--plot", "x.png", code=2)
-    assert "x.doc: got '.doc', expected .png | .pdf | .svg" in output_of(capsys, alone, "--plot", "x.doc", code=2)
+    assert "x.doc: " in output_of(capsys, alone, "--plot", "x.doc", code=2)
     assert "folder no does not exist" in output_of(capsys, alone, "--plot", "no/x.png", code=2)
 
 
@@ -191,18 +191,18 @@ def test_corrupt_and_foreign_files_are_refused_in_a_line(point, study, tmp_path,
     inside.write_bytes(whole[:-100])
     root = study.parents[1]
     for path, words in (
-        (tmp_path / "cut.nc", "is corrupt, or not a netCDF file"),
-        (tmp_path / "changed.nc", "was changed after it was written"),
-        (tmp_path / "text.nc", "not a netCDF file"),
-        (tmp_path / "foreign.nc", "has no checksum"),
-        (tmp_path / "none.nc", "is missing"),
-        (study, "got a folder, expected a netCDF file (.nc); of the results of a study, read summary/claims.md, "),
-        (study / "study.json", "got a .json file, expected a netCDF file (.nc); "),
+        (tmp_path / "cut.nc", "corrupt"),
+        (tmp_path / "changed.nc", "changed"),
+        (tmp_path / "text.nc", "netCDF"),
+        (tmp_path / "foreign.nc", "checksum"),
+        (tmp_path / "none.nc", "missing"),
+        (study, "summary/claims.md"),
+        (study / "study.json", ".json"),
         (inside, f"remake it: cd {shlex.quote(str(root))} && snakemake -c2 -R {inside.relative_to(root)}"),
     ):
         said = output_of(capsys, path, code=2)
         assert said.startswith(f"bk show: {path}: ")
-        assert words in said
+        assert words in said.removeprefix(f"bk show: {path}: ")
         assert ("remake" in said) == (path == inside)
     inside.unlink()
 

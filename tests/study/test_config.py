@@ -2,7 +2,6 @@
 
 import copy
 import math
-import re
 import time
 from functools import reduce
 
@@ -30,7 +29,7 @@ def load(**changes):
 
 @pytest.mark.parametrize(("changes", "words"), BAD_CHANGES)
 def test_bad_configs_get_one_line(changes, words):
-    with refused("config/test.yaml: ", *words, error=ConfigError):
+    with refused("config/test.yaml", *words, error=ConfigError):
         load(**changes)
 
 
@@ -50,7 +49,7 @@ def test_numbers_outside_their_range_get_one_line(key):
     *sections, name = key.split(".")
     for value in (*wrong, math.nan, math.inf, True, "1e-6", "long"):
         changes = reduce(lambda inside, section: {section: inside}, reversed(sections), {name: value})
-        words = f"config/test.yaml: {key}: got {value!r}, expected a {'whole ' * whole}number ", ends
+        words = f"config/test.yaml: {key}: {value!r}", ends
         with refused(*words, error=ConfigError):
             load(**changes)
 
@@ -60,7 +59,7 @@ def test_bad_files_get_one_line(tmp_path, case):
     content, words = BAD_FILES[case]
     path = tmp_path / "study.yaml"
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
-    with refused("study.yaml: ", *words, error=ConfigError):
+    with refused("study.yaml", *words, error=ConfigError):
         load_study(read_config(path), str(path))
 
 
@@ -137,7 +136,7 @@ def test_command_of_a_point():
     assert "--step 0.01" in options
     assert "--lyapunov-alignment 250.0" in options
     assert "--position=-0.989,-0.993,-0.991" in study.command("nonlinear", "minus", "0.0800")
-    with pytest.raises(ConfigError, match=re.escape("a0.0801: not a point of study test")):
+    with refused("a0.0801", error=ConfigError):
         study.command("linearized", "plus", "0.0801")
 
 
@@ -169,7 +168,7 @@ def test_command_of_another_solver():
     assert "--lyapunov-exponents 0" in rk4
     assert "--window 500" in rk4
     for law, solver in (("linearized", "map"), ("nonlinear", "rk4"), ("nonlinear", "map")):
-        with pytest.raises(ConfigError, match=f"{law}/{solver}: not a comparison of study test"):
+        with refused(f"{law}/{solver}", error=ConfigError):
             study.command(law, "plus", "0.0800", solver)
 
 
@@ -201,15 +200,15 @@ def test_a_thousand_values_are_checked_fast():
 def test_a_run_too_long_for_the_comparison_is_refused_by_the_key_that_made_it_so(key):
     """The step of the comparison has a default; each of the remedies that the line names is one."""
     long = {key: 2e7}
-    with refused(f"{key}: 20000000.0", "a shorter run, solvers.step of at least 0.0061, or without: [solvers]"):
+    with refused(f"{key}: 20000000.0", "solvers.step", "0.0061", "without: [solvers]"):
         load(**long)
     load(**long, solvers={"step": 0.0061})
     load(**long, without=["solvers"])
     load(**{key: 5e6})
-    with refused("solvers.step: 0.003", "at least 0.0061 in a run of 2.000", "or without: [solvers]"):
+    with refused("solvers.step: 0.003", "0.0061", "without: [solvers]"):
         load(**long, solvers={"step": 0.003})
     # No step is both short enough for the chain and long enough for the run.
-    with refused(f"{key}: 600000000.0", "expected a shorter run, or without: [solvers]"):
+    with refused(f"{key}: 600000000.0", "without: [solvers]"):
         load(**{key: 6e8}, sampling=1000)
 
 

