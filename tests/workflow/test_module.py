@@ -9,6 +9,8 @@ import yaml
 
 from burridge_knopoff import open_study
 from burridge_knopoff.check.study import check_study
+from burridge_knopoff.outputs import study_files
+from burridge_knopoff.study.recorded import recorded_study
 from tests.small_study import SMALL
 from tests.workflow.conftest import REPOSITORY
 from tests.workflow.snakemake import SOURCES, run_snakemake
@@ -167,8 +169,8 @@ def test_a_whole_study(tmp_path):
     results = tmp_path / "results" / "tiny"
     check = check_study(results)
     assert (check.exit_code, check.findings) in ((0, []), (3, check.findings)), check.lines()
-    record = json.loads((results / "study.json").read_text())
-    assert {"report.html", "summary/claims.json", "summary/proof.nc", "summary/edges.nc"} <= record["files"].keys()
-    assert [file for file in record["files"] if not (results / file).is_file()] == []
+    files = study_files(recorded_study(results)[1])
+    assert {"report.html", "summary/claims.json", "summary/proof.nc", "summary/edges.nc"} <= files.keys()
+    assert [file for file in files if not (results / file).is_file()] == []
     assert open_study(results)["summary/attractors"].sizes["a"] == 2
     assert "Nothing to be done" in host.ok("-n", "stick_slip_all")
