@@ -33,7 +33,7 @@ PART = re.compile(r"^(.+): \d+, ([\d.]+) s, the longest ([\d.]+) s(; \d+ from th
 def planned(config, *targets, cores=2):
     """Return the plan of all jobs of a study, as `snakemake -n --forceall` makes it."""
     plan, written = dry_run([*targets, "--forceall", "--configfile", config, f"-c{cores}"])
-    return plan if plan and plan.workflow.dag else sys.exit(written)
+    return plan if plan and plan.workflow.dag is not None else sys.exit(written)
 
 
 def recorded(config, cores=2):

@@ -46,7 +46,7 @@ def by_hand(arguments):
         raise ValueError(f"--out: got {options.out}, expected a folder outside the results")
     # Snakemake names files by their paths from the folder that contains `results`.
     os.chdir(results.parents[1])
-    job = planned_job(f"results/{results.name}/{name}", record["arguments"])
+    job = planned_job(f"results/{results.name}/{name}", record)
     print(f"{name}: written into {folder}", file=sys.stderr)
     given = {key: getattr(job, key) for key in ("input", "output", "params", "wildcards", "threads", "resources")}
     return SimpleNamespace(**given, rule=job.rule.name, log=[], folder=folder)
@@ -63,11 +63,16 @@ def last_study():
     return records[-1].parent if records else None
 
 
-def planned_job(file, arguments):
+def planned_job(file, record):
     """Return the job that makes a file, by Snakemake's own plan."""
-    where = [] if "-s" in arguments else ["-s", f"{SNAKEFILE}"]
-    plan, written = dry_run([file, *where, *arguments])
-    if not (plan and plan.workflow.dag):
+    option, snakefile, *others = words = [*record["arguments"], "", ""]
+    is_recorded = option == "-s"
+    # A study that another workflow imports has the Snakefile of that workflow in place of a config file.
+    if not (is_recorded and Path(snakefile).resolve() == Path(record["config_file"]).resolve()):
+        words = ["-s", f"{SNAKEFILE}", *(others if is_recorded else words)]
+    plan, written = dry_run([file, *filter(None, words)])
+    # A DAG without jobs to run counts as false.
+    if not plan or plan.workflow.dag is None:
         raise ValueError(written.strip())
     return next(job for job in requested_jobs(plan.workflow) if file in job.output)
 
