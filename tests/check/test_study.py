@@ -155,7 +155,7 @@ def test_a_file_made_from_another_version_of_an_input_is_stale(results):
     assert open_result(results / of_it).data.sizes
     emptied(results / name)
     findings = findings_of(results)
-    assert findings.pop(name) == ("corrupt", "empty")
+    assert findings.pop(name) == ("corrupt", "is empty")
     assert findings[of_it] == ("outdated", f"was made from {results / name}, which is corrupt")
 
 
