@@ -33,6 +33,7 @@ include: "workflow/rules/catalogue.smk"
 include: "workflow/rules/chains.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/claims.smk"
+include: "workflow/rules/collect.smk"
 include: "workflow/rules/report.smk"
 
 
@@ -41,7 +42,9 @@ rule all:
     default_target: True
     input:
         rules.points.input,
-        files_in(""),
+        rules.summary.input,
+        rules.figures.input,
+        rules.report.output,
     message:
         f"study {STUDY.name}: all points, summaries, figures and the report are in {RESULTS}"
 

@@ -12,19 +12,15 @@ Snakemake itself, and the slowing of jobs by each other, is not included.
 """
 
 import argparse
-import contextlib
 import heapq
-import io
 import re
 import sys
 from collections import defaultdict
 from dataclasses import replace
 from pathlib import Path
 
-from snakemake.cli import main as snakemake
-
-from snakemake_logger_plugin_study.durations import Durations, measured_seconds, work_of
-from snakemake_logger_plugin_study.plan import PLAN
+from snakemake_logger_plugin_study.dry_run import dry_run
+from snakemake_logger_plugin_study.durations import Durations, measured_seconds
 from snakemake_logger_plugin_study.run import DONE, RUNNING, WAITING
 
 #: Moments of a run at which the estimate is compared, and the smallest time that the display prints.
@@ -36,16 +32,8 @@ PART = re.compile(r"^(.+): \d+, ([\d.]+) s, the longest ([\d.]+) s(; \d+ from th
 
 def planned(config, *targets, cores=2):
     """Return the plan of all jobs of a study, as `snakemake -n --forceall` makes it."""
-    arguments = [*targets, "-n", "--forceall", "-c", str(cores), "--configfile", config]
-    output = io.StringIO()
-    with contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
-        try:
-            snakemake(arguments)
-        except SystemExit as end:
-            code = end.code
-    if code:
-        sys.exit(output.getvalue())
-    return PLAN
+    plan, written = dry_run([*targets, "--forceall", "--configfile", config, f"-c{cores}"])
+    return plan if plan and plan.workflow.dag else sys.exit(written)
 
 
 def recorded(config, cores=2):
@@ -63,7 +51,7 @@ def recorded(config, cores=2):
 
 def estimates(run, seconds):
     """Return (moment, estimate, truth) of a run, in seconds, from its beginning to its end."""
-    run.durations = Durations(work_of(PLAN.study))
+    run.durations = Durations(run.durations.work)
     ends = schedule(run.jobs, seconds, run.cores)
     end = max(ends.values())
     for moment in (end * step / MOMENTS for step in range(MOMENTS)):

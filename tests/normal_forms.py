@@ -10,12 +10,25 @@ from types import MappingProxyType, SimpleNamespace
 
 import numpy as np
 
-from burridge_knopoff import Chain, ChainState, Model, PeriodicOrbit, Symmetry, find_periodic_orbit
-from burridge_knopoff.periodic_orbits.flow import new_runner, rate
+from burridge_knopoff import (
+    Chain,
+    ChainState,
+    ContinuationSettings,
+    Model,
+    PeriodicOrbit,
+    Symmetry,
+    find_periodic_orbit,
+    follow,
+    locate_bifurcations,
+)
+from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation
+from burridge_knopoff.periodic_orbits.flow import mean_distance, new_runner, rate
 from burridge_knopoff.periodic_orbits.grazing_distances import GrazingDistances, distances_of
+from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 
 #: Every form has its bifurcation at this parameter a, which is CRITICAL + μ.
 CRITICAL = 0.1
+STEPS = ContinuationSettings(first_step=1e-3, largest_step=2e-3)
 #: Chains of two and of three blocks without mirror symmetry.
 TWO, THREE = Chain(2, threshold=(1.0, 1.1)), Chain(3, threshold=(1.0, 1.1, 1.2))
 
@@ -111,6 +124,7 @@ def distances(model, orbit):
 
 
 new_runner.register(MapModel, MapRunner)
+mean_distance.register(MapModel, lambda model, start, period: np.ptp(start.position))
 rate.register(MapModel, lambda model, at: np.repeat([0.0, 1.0], model.blocks))
 distances_of.register(MapModel, distances)
 
@@ -181,3 +195,9 @@ def border_collision(left: float, right: float, jump: float = 0.0) -> NormalForm
 def linear(matrix: Callable, **fields) -> NormalForm:
     """Return the map x → matrix(μ) x, with the orbit x = 0."""
     return NormalForm(lambda x, mu: matrix(mu) @ x, lambda x, mu: matrix(mu), **fields)
+
+
+def followed(orbit: PeriodicOrbit) -> tuple[list[BranchOrbit], list[Bifurcation]]:
+    """Return the branch through an orbit toward the bifurcation and as far beyond it, and what is located on it."""
+    branch = follow(orbit, (CRITICAL - 0.0101, CRITICAL + 0.0101), STEPS, upward=orbit.a < CRITICAL)
+    return branch, list(locate_bifurcations(branch))

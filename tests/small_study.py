@@ -13,7 +13,7 @@ import xarray
 
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.provenance.record import read_study_record, write_study_record
+from burridge_knopoff.provenance.record import write_study_record
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import Study
@@ -99,10 +99,8 @@ class SmallStudy:
 
     def record(self, config_file: str | Path, config: Mapping[str, Any], arguments: str = "") -> None:
         """Record another config file, its content and other arguments of Snakemake for the same study."""
-        files = read_study_record(self.folder)["files"]
-        write_study_record(
-            self.folder, self.study.config, self.study.parameters, config_file, dict(config), arguments, files
-        )
+        study = self.study
+        write_study_record(self.folder, study.config, study.parameters, config_file, dict(config), arguments)
 
 
 def open_small_study(results: Path) -> SmallStudy:

@@ -26,12 +26,13 @@ class Job:
     """A job of a study: what it reads, and what it writes with its origin.
 
     snakemake : what Snakemake gives a script, with `config`, the keys of the config that the job uses, and `sources`
-        among its params; messages, and errors, go to its log
+        among its params; messages, and errors, go to its log. A script that is run by hand has no log, and the `folder`
+        into which it writes.
 
     config : the part of the study's config that these keys describe
     law : its wildcard of that name
     cores : number of its cores
-    results : folder of the study
+    results : folder of the study; folder : the folder into which it writes, the same unless it is run by hand
     cache : folder in which long jobs of the study cache their results, for other values of a or after a kill
 
     Raises BadFile if an input is corrupt or not the expected one, ValueError if the results have no record of the study
@@ -39,9 +40,10 @@ class Job:
     """
 
     def __init__(self, snakemake: Any) -> None:
-        remove_links(snakemake.log[0])
-        sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
-        reserve_room(sys.stderr)
+        for log in snakemake.log:
+            remove_links(log)
+            sys.stdout = sys.stderr = open(log, "w", buffering=1, encoding="utf-8")
+            reserve_room(sys.stderr)
         logging.basicConfig(format="%(message)s")
         logging.getLogger("burridge_knopoff").setLevel(logging.INFO)
         folder = study_folder(snakemake.output[0])
@@ -54,8 +56,10 @@ class Job:
         self.config = nested(snakemake.params.config)
         self.wildcards, self.params = snakemake.wildcards, snakemake.params
         self.cores: int = snakemake.resources.get("cpus_per_task", snakemake.threads)
-        self.cache = Path(".snakemake/study_cache", self.results.name)
-        self._inputs, self._outputs, self._rule = snakemake.input, [*map(Path, snakemake.output)], snakemake.rule
+        is_by_hand = hasattr(snakemake, "folder")
+        self.folder = snakemake.folder if is_by_hand else self.results
+        self.cache = self.folder / "cache" if is_by_hand else Path(".snakemake/study_cache", self.results.name)
+        self._inputs, self._outputs, self._rule = snakemake.input, snakemake.output, snakemake.rule
         self._check_inputs()
 
     @property
@@ -103,10 +107,11 @@ class Job:
     def write(self, *contents: Any) -> None:
         """Write the outputs: Datasets, texts, or one Figure to all of them."""
         pictures = {}
-        names = [path.relative_to(self.results).as_posix() for path in self._outputs]
+        names = [Path(path).relative_to(self.results).as_posix() for path in self._outputs]
         if len(contents) == 1:
             contents *= len(names)
-        for path, name, content in zip(self._outputs, names, contents, strict=True):
+        for name, content in zip(names, contents, strict=True):
+            path = self.folder / name
             params = {**self._params, **self.params.config}
             origin = Origin(name, self._rule, params, self._checksums, self.params.sources)
             if isinstance(content, xarray.Dataset):

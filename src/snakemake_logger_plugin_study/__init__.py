@@ -29,7 +29,7 @@ from snakemake_logger_plugin_study.closing import closing_lines
 from snakemake_logger_plugin_study.command_line import check_command_line
 from snakemake_logger_plugin_study.display import dry_run_lines, first_line, newer_lines, picture, progress_line
 from snakemake_logger_plugin_study.durations import measured_seconds
-from snakemake_logger_plugin_study.plan import PLAN
+from snakemake_logger_plugin_study.plan import Plan
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, Run
 from snakemake_logger_plugin_study.targets import target_error
 
@@ -60,9 +60,14 @@ class LogHandler(LogHandlerBase):
         self._is_study = self._has_jobs = self._has_stopped = False
         #: The capacity of a cluster, in place of the cores of this machine.
         self._cluster: dict[str, Any] = {}
+        self._plan: Plan | None = None
         self._begin, self._run = 0.0, Run()
         self._picture: Live | None = None
         self._next_line = 0.0
+
+    def set_plan(self, plan: Plan) -> None:
+        """Take the plan of the study, before its run begins."""
+        self._plan = plan
 
     def filter(self, record: LogRecord) -> Any:
         """Follow the run by each record, also by those that are not shown."""
@@ -79,7 +84,8 @@ class LogHandler(LogHandlerBase):
             event, exception = getattr(record, "event", None), getattr(record, "exception", None)
             is_failure = event == LogEvent.JOB_ERROR or exception == "RuleException"
             is_hidden = is_failure and self._run.jobs and not self.common_settings.show_failed_logs
-            if not self._has_jobs and event == LogEvent.ERROR and (error := target_error(PLAN)):
+            plan = self._plan if event == LogEvent.ERROR and not self._has_jobs else None
+            if plan and (error := target_error(plan)):
                 self._write(error)
             elif self._shows_all or not self._is_study or (record.levelno >= WARNING and not is_hidden):
                 self._write(self.format(record))
@@ -90,7 +96,7 @@ class LogHandler(LogHandlerBase):
         run = self._run
         match getattr(record, "event", None):
             case LogEvent.WORKFLOW_STARTED:
-                self._is_study = PLAN.study is not None
+                self._is_study = self._plan is not None
             # Without a limit it is sys.maxsize.
             case LogEvent.RESOURCES_INFO if 0 < (nodes := getattr(record, "nodes", None) or 0) < sys.maxsize:
                 self._cluster = {"cores": nodes, "capacity": f"with {format_count(nodes, 'job')} at a time"}
@@ -118,7 +124,7 @@ class LogHandler(LogHandlerBase):
 
     def _begin_display(self) -> None:
         """Begin to display a run whose first jobs start."""
-        run = self._run = replace(PLAN.run, **self._cluster)
+        run = self._run = replace(self._plan.run if self._plan else Run(), **self._cluster)
         self._begin = time.monotonic()
         self._next_line = self._begin + PACE
         if not run.jobs:
@@ -147,13 +153,14 @@ class LogHandler(LogHandlerBase):
         super().close()
 
     def _last_lines(self) -> Sequence[str]:
+        assert self._plan is not None
         if not self._has_jobs and not self._has_stopped:
             # No hook of the Snakefile runs then; `bk check` and `bk prune` would use the config of an earlier run.
             if not self.common_settings.dryrun:
-                PLAN.record()
+                self._plan.record()
             return [NOTHING]
         if self.common_settings.dryrun and not self._has_stopped:
-            plan = PLAN.look_ahead()
+            plan = self._plan.look_ahead()
             # A rule such as `points`, named by --until, is a job that makes nothing.
             return dry_run_lines(plan) if plan.jobs else [NOTHING]
         if not self._run.jobs:

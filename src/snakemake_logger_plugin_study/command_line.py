@@ -48,6 +48,12 @@ def runs_jobs(arguments: Sequence[str]) -> bool:
     return not any(_RUNS_NONE.match(argument) for argument in arguments)
 
 
+def only_reports(arguments: Sequence[str]) -> bool:
+    """Return whether a command line writes Snakemake's report on results that are there, and runs nothing."""
+    options = {word.partition("=")[0] for word in arguments}
+    return "--report" in options and "--report-after-run" not in options
+
+
 def check_one_config(paths: Sequence[str | Path]) -> None:
     """Raise ConfigError, one line, for several config files: Snakemake reads targets that follow one as files."""
     if len(paths) > 1:

@@ -9,12 +9,13 @@ import yaml
 
 from burridge_knopoff import open_study
 from burridge_knopoff.cli import main
-from burridge_knopoff.provenance.record import read_study_record, write_study_record
+from burridge_knopoff.outputs import study_files
+from burridge_knopoff.provenance.record import write_study_record
 from burridge_knopoff.study.load import load_study
+from burridge_knopoff.study.recorded import recorded_study
 from tests.check.conftest import change_record
 from tests.check.damages import POINT
 from tests.workflow.conftest import TINY
-from tests.workflow.planned import planned
 
 #: Of another state, law, a or number of blocks than those of the study, where none is computed, or of earlier versions.
 LEFT_OVER = """
@@ -44,10 +45,16 @@ def files_in(results):
     return {path.relative_to(results).as_posix() for path in files}
 
 
-def record(results, config, files, file="study.yaml"):
+def record(results, config, file="study.yaml"):
     """Record a study, as its run does."""
     study = load_study(config, file)
-    write_study_record(results, study.config, study.parameters, file, config, "", files)
+    write_study_record(results, study.config, study.parameters, file, config, "")
+
+
+def files_and_logs(results):
+    """Return the names of all files of the recorded study except points, and of their logs."""
+    files = study_files(recorded_study(results)[1])
+    return {*files, *(file.log for file in files.values())}
 
 
 def test_what_is_not_of_the_study_is_pruned_and_nothing_else(results, capsys):
@@ -57,10 +64,9 @@ def test_what_is_not_of_the_study_is_pruned_and_nothing_else(results, capsys):
     # The next run has not made them again yet.
     for name in ("report.html", "summary/claims.json", "logs/report.log", "logs/claims.log"):
         (results / name).unlink()
-    before, whole = read_study_record(results)["files"], files_in(results)
-    record(results, config, planned(config).record["files"])
-    after = read_study_record(results)["files"]
-    gone = {*before, *before.values()} - {*after, *after.values()}
+    before, whole = files_and_logs(results), files_in(results)
+    record(results, config)
+    gone = before - files_and_logs(results)
     gone |= {name.replace("logs", "benchmarks").replace(".log", ".tsv") for name in gone if name.startswith("logs/")}
     assert OF_STAGES <= gone <= whole
     for name in LEFT_OVER.split():
@@ -97,14 +103,14 @@ OF_OTHERS = ["notes/diary.txt", "summary/mine.csv", "figures/mine.png", "copy/su
 
 
 def test_a_record_that_names_other_files_deletes_none(results, capsys):
-    """A folder from elsewhere may have any record; those of earlier versions have a list of files to delete."""
+    """A folder from elsewhere may have any record; those of earlier versions have lists of files."""
     for name in OF_OTHERS:
         (results / name).parent.mkdir(parents=True, exist_ok=True)
         (results / name).write_text("mine\n")
 
     def name_others(record):
         record["left"] = dict.fromkeys([*OF_OTHERS, "../../study.yaml", "summary/runs.nc"], OF_OTHERS[0])
-        record["files"] |= {"summary/other.nc": "notes/diary.log", "notes/diary.log": "notes/diary.txt"}
+        record["files"] = {"summary/other.nc": "notes/diary.log", "notes/diary.log": "notes/diary.txt"}
 
     change_record(results, name_others)
     before = files_in(results)
@@ -112,15 +118,6 @@ def test_a_record_that_names_other_files_deletes_none(results, capsys):
     assert capsys.readouterr().out == f"{results}: 0 files deleted\n"
     assert files_in(results) == before
     assert Path("study.yaml").exists()
-
-
-def test_a_record_without_a_list_of_files_deletes_nothing(results, capsys):
-    """Those of earlier versions: every summary would be left over."""
-    shutil.copy(results / POINT, (results / POINT).with_name("a0.0600.nc"))
-    change_record(results, lambda record: record.pop("files"))
-    before = files_in(results)
-    assert main(["prune", str(results)]) == 0
-    assert files_in(results) == before
 
 
 FOREIGN = {
@@ -146,7 +143,7 @@ def test_by_the_record_of_another_study_nothing_is_pruned(results, capsys, case)
     """By such a record all files may be left over. Its config file may exist as well."""
     change, words = FOREIGN[case]
     config = {**yaml.safe_load(TINY), **change}
-    record(results, config, read_study_record(results)["files"], "foreign.yaml")
+    record(results, config, "foreign.yaml")
     points = results / "points/linearized/minus"
     paths = {"point": points / "a0.0500.nc", "other": points / "a0.0600.nc"}
     paths["summary"] = results / "summary/runs.nc"

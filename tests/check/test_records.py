@@ -39,7 +39,7 @@ def test_a_record_that_was_changed_by_hand_is_refused_in_a_line_that_names_it(re
     record = results / "study.json"
     text = record.read_text()
     content = json.loads(text)
-    _, *paths = parts({key: content[key] for key in ("config", "grid", "files")})
+    _, *paths = parts({key: content[key] for key in ("config", "grid")})
     *place, name = data.draw(st.sampled_from(paths))
     nested = reduce(lambda inside, _: [inside], range(50), [])
     reduce(getitem, place, content)[name] = data.draw(

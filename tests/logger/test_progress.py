@@ -14,6 +14,7 @@ from snakemake_interface_logger_plugins.common import LogEvent
 
 import snakemake_logger_plugin_study as plugin
 from burridge_knopoff.study.job_log import INTERRUPTED
+from burridge_knopoff.study.load import load_study
 from snakemake_logger_plugin_study.display import (
     dry_run_lines,
     first_line,
@@ -23,6 +24,8 @@ from snakemake_logger_plugin_study.display import (
 )
 from snakemake_logger_plugin_study.plan import Plan
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, WAITING, Job, Run
+
+SMALL = load_study({"study": "x", "a": [0.05], "initial": {"minus": {}}}, "x.yaml")
 
 
 def test_durations_in_words():
@@ -63,7 +66,7 @@ def test_a_line_at_the_begin_and_now_and_then(monkeypatch):
 
 
 def test_a_defect_of_the_plan_is_only_told(caplog):
-    plan = Plan("results/x", SimpleNamespace(), "study")
+    plan = Plan(SMALL, "results/x", SimpleNamespace())
     plan.announce()
     assert plan.run == Run()
     assert caplog.messages[0].startswith("the stages and the duration of this run cannot be determined: ")
@@ -82,14 +85,15 @@ def written(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "x.log").write_text("because\n")
 
-    def write(*records, planned=2, study="study", recording=lambda: None, **settings):
+    def write(*records, planned=2, study=SMALL, recording=lambda: None, **settings):
         stream, settings = io.StringIO(), {**SETTINGS, **settings}
         monkeypatch.setattr(sys, "stderr", stream)
         monkeypatch.setattr(sys, "argv", ["snakemake"])
         of_run = {number: Job("simulate a=0.0800", "points", "simulate") for number in range(1, planned + 1)}
-        plan = Plan(study=study, run=Run("results/x", of_run, ["report"]), record=recording)
-        monkeypatch.setattr(plugin, "PLAN", plan)
         handler = plugin.LogHandler(common_settings=SimpleNamespace(**settings), settings=None)
+        if study:
+            run = Run("results/x", of_run, ["report"])
+            handler.set_plan(Plan(study, "results/x", SimpleNamespace(), record=recording, run=run))
         # As Snakemake does it.
         handler.addFilter(DefaultFilter(**{name: settings[name] for name in signature(DefaultFilter).parameters}))
         handler.setFormatter(DefaultFormatter(settings["quiet"], settings["show_failed_logs"]))

@@ -12,7 +12,8 @@ from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bi
 from burridge_knopoff.periodic_orbits.following import BranchOrbit
 from burridge_knopoff.periodic_orbits.parameter_line import line_along_a
 from burridge_knopoff.periodic_orbits.periodic import orbit_of
-from tests.normal_forms import MapModel, pitchfork
+from tests import normal_forms
+from tests.normal_forms import CRITICAL, THREE, MapModel, followed, orbit_at, pitchfork
 from tests.periodic_orbits.stand_in import stand_in
 
 LINE = line_along_a(Chain(3))
@@ -112,3 +113,57 @@ def test_a_fold_next_to_a_simpler_orbit_is_where_that_one_branches(away, kind):
 def test_the_beginning_of_a_branch_determines_its_bifurcation(symmetry, period, kind):
     orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=2.0)
     assert bifurcations._branch_point_kind(orbit, SimpleNamespace(symmetry=symmetry, period=period)) == kind
+
+
+@pytest.mark.parametrize("c", [0.0, 1.0])
+def test_a_multiplier_1_is_no_bifurcation_where_another_symmetry_breaks(c):
+    """x = 0 of x → (1 + μ)x − cx³ has the multiplier 1 + μ, but x → −x is no mirror symmetry of the chain."""
+    form = normal_forms.on_line(lambda x, mu: (1.0 + mu) * x - c * x**3, lambda x, mu: 1.0 + mu - 3.0 * c * x**2)
+    branch, bifurcations = followed(orbit_at(form, -0.01, 0.0))
+    assert [point.multipliers.unstable_count for point in (branch[0], branch[-1])] == [0, 1]
+    assert bifurcations == []
+
+
+def test_two_real_multipliers_whose_product_is_1_are_no_bifurcation():
+    form = normal_forms.linear(lambda mu: np.diag([2.0 * (1.0 + mu), 0.5, 0.1]))
+    _, bifurcations = followed(orbit_at(form, -0.01, 0.0, chain=THREE))
+    assert bifurcations == []
+
+
+def test_bifurcations_within_a_step_come_in_the_order_of_the_branch():
+    """A pair leaves the unit circle at μ = −0.0004 and a multiplier reaches −1 at 0.0007, or the reverse."""
+    turn = np.array([[0.6, -0.8], [0.8, 0.6]])
+
+    def matrix(mu):
+        whole = np.zeros((3, 3))
+        whole[:2, :2], whole[2, 2] = (1.0004 + mu) * turn, -1.0 - (mu - 0.0007)
+        return whole
+
+    kinds = BifurcationKind.NEIMARK_SACKER, BifurcationKind.PERIOD_DOUBLING
+    for mu, order in ((-0.01, 1), (0.01, -1)):
+        _, bifurcations = followed(orbit_at(normal_forms.linear(matrix), mu, 0.0, chain=THREE))
+        assert bifurcations[0].before is bifurcations[1].before
+        assert tuple(item.kind for item in bifurcations) == kinds[::order]
+        assert [item.value - CRITICAL for item in bifurcations] == pytest.approx([-0.0004, 0.0007][::order], abs=1e-12)
+
+
+@pytest.mark.parametrize(("hidden", "error"), [(0.0, 1e-11), (3e-9, 1e-8), (3e-8, 1e-7)])
+@pytest.mark.parametrize("rate", [1.0, 5.0])
+def test_the_error_of_a_bifurcation_is_the_bracket_in_which_its_sign_changes(hidden, error, rate):
+    """The multiplier is −1 as far as `hidden` from μ = 0."""
+    form = normal_forms.linear(lambda mu: np.diag([-1.0 - rate * mu * (abs(mu) > hidden)]))
+    _, (bifurcation,) = followed(orbit_at(form, -0.01, 0.0, chain=Chain(1)))
+    assert abs(bifurcation.value - CRITICAL) <= bifurcation.error
+    assert bifurcation.error == pytest.approx(error, rel=1e-2, abs=0.0)
+
+
+def test_a_multiplier_that_remains_1_or_is_lost_is_not_a_bifurcation():
+    """The sign does not change within 1e-7, or there is no map there."""
+    forms = (
+        normal_forms.linear(lambda mu: np.diag([-1.0 - mu * (abs(mu) > 1.1e-7)])),
+        normal_forms.linear(lambda mu: np.diag([-1.0 - mu]), exists=lambda mu: abs(mu) > 1e-4),
+    )
+    for form in forms:
+        branch, bifurcations = followed(orbit_at(form, -0.01, 0.0, chain=Chain(1)))
+        assert branch[-1].value > CRITICAL
+        assert bifurcations == []

@@ -3,21 +3,14 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import BifurcationKind, Chain, ContinuationSettings, Symmetry, follow, locate_bifurcations
+from burridge_knopoff import BifurcationKind, Chain, Symmetry, follow, locate_bifurcations
 from tests import normal_forms
-from tests.normal_forms import CRITICAL, THREE, antisymmetric, border_collision, neimark_sacker, orbit_at
+from tests.normal_forms import CRITICAL, STEPS, antisymmetric, border_collision, followed, neimark_sacker, orbit_at
 
-STEPS = ContinuationSettings(first_step=1e-3, largest_step=2e-3)
 #: Values of μ from which branches are followed to the other side of the bifurcation.
 SIDES = pytest.mark.parametrize("mu", [-0.01, 0.01])
 SUPER_AND_SUBCRITICAL = pytest.mark.parametrize("c", [1.0, -1.0])
 PAIR = Chain(2)
-
-
-def followed(orbit):
-    """Return the branch through an orbit toward the bifurcation and as far beyond it, and what is located on it."""
-    branch = follow(orbit, (CRITICAL - 0.0101, CRITICAL + 0.0101), STEPS, upward=orbit.a < CRITICAL)
-    return branch, list(locate_bifurcations(branch))
 
 
 def check(bifurcation, kind, *, before, after, turns=False):
@@ -245,35 +238,20 @@ def test_a_branch_does_not_continue_with_its_mirror_image():
     check(bifurcation, BifurcationKind.GRAZING, before=0, after=None)
 
 
-@pytest.mark.parametrize("c", [0.0, 1.0])
-def test_a_multiplier_1_is_no_bifurcation_where_another_symmetry_breaks(c):
-    """x = 0 of x → (1 + μ)x − cx³ has the multiplier 1 + μ, but x → −x is no mirror symmetry of the chain."""
-    form = normal_forms.on_line(lambda x, mu: (1.0 + mu) * x - c * x**3, lambda x, mu: 1.0 + mu - 3.0 * c * x**2)
-    branch, bifurcations = followed(orbit_at(form, -0.01, 0.0))
-    assert [point.multipliers.unstable_count for point in (branch[0], branch[-1])] == [0, 1]
-    assert bifurcations == []
-
-
-def test_two_real_multipliers_whose_product_is_1_are_no_bifurcation():
-    form = normal_forms.linear(lambda mu: np.diag([2.0 * (1.0 + mu), 0.5, 0.1]))
-    _, bifurcations = followed(orbit_at(form, -0.01, 0.0, chain=THREE))
-    assert bifurcations == []
-
-
-def test_bifurcations_come_in_the_order_of_the_branch():
-    """A pair leaves the unit circle at μ = −0.004 and a multiplier reaches −1 at 0.0007, or the reverse."""
-    turn = np.array([[0.6, -0.8], [0.8, 0.6]])
-
-    def matrix(mu):
-        whole = np.zeros((3, 3))
-        whole[:2, :2], whole[2, 2] = (1.004 + mu) * turn, -1.0 - (mu - 0.0007)
-        return whole
-
-    kinds = BifurcationKind.NEIMARK_SACKER, BifurcationKind.PERIOD_DOUBLING
-    for mu, order in ((-0.01, 1), (0.01, -1)):
-        _, bifurcations = followed(orbit_at(normal_forms.linear(matrix), mu, 0.0, chain=THREE))
-        assert tuple(item.kind for item in bifurcations) == kinds[::order]
-        assert [item.value - CRITICAL for item in bifurcations] == pytest.approx([-0.004, 0.0007][::order], abs=1e-12)
+def test_a_fold_close_to_a_simpler_orbit_is_passed():
+    """Of d → (1 + μ)d + d³ − 5000d⁵ the pair μ = −d² + 5000d⁴ folds at d = 0.01, before it meets d = 0."""
+    form = antisymmetric(
+        lambda d, mu: (1.0 + mu) * d + d**3 - 5000.0 * d**5,
+        lambda d, mu: 1.0 + mu + 3.0 * d**2 - 25000.0 * d**4,
+    )
+    d = 0.014
+    orbit = orbit_at(form, -(d**2) + 5000.0 * d**4, [d, -d], chain=PAIR)
+    branch = follow(orbit, (CRITICAL - 0.01, CRITICAL + 0.01), upward=False)
+    fold, end = locate_bifurcations(branch)
+    assert (fold.kind, fold.is_turning_point) == (BifurcationKind.FOLD, True)
+    assert fold.value == pytest.approx(CRITICAL - 5e-5, abs=1e-10)
+    assert [point.multipliers.unstable_count for point in (fold.before, fold.after)] == [0, 1]
+    check(end, BifurcationKind.PITCHFORK, before=1, after=None)
 
 
 @pytest.mark.parametrize("upward", [True, False])
@@ -294,25 +272,3 @@ def test_doubled_orbits_between_two_period_doublings(upward):
     assert bifurcation.kind == BifurcationKind.PERIOD_DOUBLING
     assert bifurcation.value == pytest.approx(CRITICAL + 0.02 * upward, abs=1e-10)
     assert bifurcation.after is None
-
-
-@pytest.mark.parametrize(("hidden", "error"), [(0.0, 1e-11), (3e-9, 1e-8), (3e-8, 1e-7)])
-@pytest.mark.parametrize("rate", [1.0, 5.0])
-def test_the_error_of_a_bifurcation_is_the_bracket_in_which_its_sign_changes(hidden, error, rate):
-    """The multiplier is −1 as far as `hidden` from μ = 0."""
-    form = normal_forms.linear(lambda mu: np.diag([-1.0 - rate * mu * (abs(mu) > hidden)]))
-    _, (bifurcation,) = followed(orbit_at(form, -0.01, 0.0, chain=Chain(1)))
-    assert abs(bifurcation.value - CRITICAL) <= bifurcation.error
-    assert bifurcation.error == pytest.approx(error, rel=1e-2, abs=0.0)
-
-
-def test_a_multiplier_that_remains_1_or_is_lost_is_not_a_bifurcation():
-    """The sign does not change within 1e-7, or there is no map there."""
-    forms = (
-        normal_forms.linear(lambda mu: np.diag([-1.0 - mu * (abs(mu) > 1.1e-7)])),
-        normal_forms.linear(lambda mu: np.diag([-1.0 - mu]), exists=lambda mu: abs(mu) > 1e-4),
-    )
-    for form in forms:
-        branch, bifurcations = followed(orbit_at(form, -0.01, 0.0, chain=Chain(1)))
-        assert branch[-1].value > CRITICAL
-        assert bifurcations == []

@@ -45,7 +45,7 @@ def test_at_another_v_they_have_other_commands_than_their_numbers(tmp_path, chan
         InitialState("plus", **NUMBERS["plus"]),
     ]
     for study in (short, long):
-        write_study_record(str(tmp_path), study.config, study.parameters, "x.yaml", {}, "", {})
+        write_study_record(str(tmp_path), study.config, study.parameters, "x.yaml", {}, "")
         assert recorded_study(tmp_path)[1] == study
 
 

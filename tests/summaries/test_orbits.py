@@ -1,14 +1,13 @@
 """The summary of the synchronized orbit: its contents, and its flags where there is no orbit."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from scipy.optimize import curve_fit
 
-from burridge_knopoff import Chain, FormulaLaw, Model, law_of, multipliers
+from burridge_knopoff import Chain, FormulaLaw, Model, Symmetry, law_of, multipliers
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
 from burridge_knopoff.periodic_orbits.pitchfork import branching_orbit
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import (
     bifurcations_of,
@@ -22,6 +21,7 @@ from burridge_knopoff.summaries import orbits
 from burridge_knopoff.summaries.amplitude import sweep
 from burridge_knopoff.summaries.orbit_flags import BifurcationSide
 from burridge_knopoff.summaries.orbits import COMPARISON, effective_a, summarize
+from tests.normal_forms import CRITICAL, antisymmetric, orbit_at
 
 
 def models(laws=PAPER_LAWS, chain=None, **options):
@@ -184,26 +184,23 @@ def test_offsets_of_sweeps_scale_with_the_chain(monkeypatch):
     assert swept[0] - critical == pytest.approx(0.1 * np.array(orbits.OFFSETS), abs=1e-12)
 
 
-@pytest.mark.parametrize("side", [1.0, -1.0])
-@pytest.mark.parametrize(("rises", "expected"), [(1.0, 1), (-1.0, -1)])
-def test_orbits_that_branch_off_where_synchrony_is_unstable_are_supercritical(monkeypatch, side, rises, expected):
-    """The multiplier may increase or decrease through 1 as a increases."""
-    critical = 0.2
-
-    def multipliers_of(orbit):
-        return SimpleNamespace(transverse=complex(1.0 + rises * (orbit.a - critical)), whole=[0.5])
-
-    def branching(at, asymmetry, near):
-        return SimpleNamespace(a=at.a + side * asymmetry**2, period=1.0, residual=0.0, mean_distance=0.5)
-
-    monkeypatch.setattr(orbits, "multipliers", multipliers_of)
-    monkeypatch.setattr(orbits, "branching_orbit", branching)
-    names = [name for name in orbits.VARIABLES if name.startswith(("branch_", "amplitude_"))]
-    values = {name: np.full((1, len(orbits.ASYMMETRIES)), np.nan) for name in names}
+@pytest.mark.parametrize("c", [1.0, -1.0])
+@pytest.mark.parametrize("rises", [1.0, -1.0])
+def test_orbits_that_branch_off_where_synchrony_is_unstable_are_supercritical(c, rises):
+    """Of d → (1 ± μ)d − cd³: the multiplier may increase or decrease through 1 as a increases, and ±μ = cd²."""
+    form = antisymmetric(
+        lambda d, mu: (1.0 + rises * mu) * d - c * d**3, lambda d, mu: 1.0 + rises * mu - 3.0 * c * d**2
+    )
+    family = KnownOrbits(orbit_at(form, -0.01, 0.0, Symmetry.SYNCHRONIZED, Chain(2)))
+    asymmetry = 0.1 * np.array(orbits.ASYMMETRIES)
+    names = [name for name in orbits.VARIABLES if name.startswith("branch_")]
+    values = {name: np.full((1, len(asymmetry)), np.nan) for name in names}
     values |= {"bifurcation_side": np.array([-1]), "critical_a_error": np.array([1e-13])}
-    values |= {name: np.array([np.nan]) for name in names if name.startswith("amplitude_")}
-    family = SimpleNamespace(at=lambda a: SimpleNamespace(a=a))
-    orbits._fill_branch(values, 0, family, critical, 0.1 * np.array(orbits.ASYMMETRIES))
-    supercritical = side * expected > 0
-    assert values["bifurcation_side"][0] == BifurcationSide[("SUB", "SUPER")[supercritical] + "CRITICAL"]
+    values |= {name: np.array([np.nan]) for name in orbits.VARIABLES if name.startswith("amplitude_")}
+    orbits._fill_branch(values, 0, family, CRITICAL, asymmetry)
+    assert values["bifurcation_side"][0] == (BifurcationSide.SUPERCRITICAL if c > 0.0 else BifurcationSide.SUBCRITICAL)
+    square = (0.5 * asymmetry) ** 2
+    assert values["branch_offset"][0] == pytest.approx(c * rises * square, abs=1e-12)
+    assert values["branch_multiplier"][0] == pytest.approx(1.0 - 2.0 * c * square, abs=1e-7)
     assert values["amplitude_exponent"][0] == pytest.approx(0.5)
+    assert values["amplitude_coefficient"][0] == pytest.approx(2.0)

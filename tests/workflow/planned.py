@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from burridge_knopoff.outputs import File
 from burridge_knopoff.provenance.record import read_study_record
 
 ROOT = Path(__file__).parents[2]
@@ -35,13 +36,13 @@ class PlannedJob:
 class PlannedStudy:
     """The jobs of the targets, the record of the whole study, its files and rules, and what Snakemake has written.
 
-    files : {file that the workflow makes, except points: its rule}
-    refusals : {rule or file that the study does not have: why}
+    files : {file that the workflow makes, except points: its rule and its log}
+    refusals : {rule that the study does not have: why}
     """
 
     jobs: tuple[PlannedJob, ...] = ()
     record: Mapping[str, Any] = field(default_factory=dict)
-    files: Mapping[str, str] = field(default_factory=dict)
+    files: Mapping[str, File] = field(default_factory=dict)
     refusals: Mapping[str, str] = field(default_factory=dict)
     output: str = ""
 
@@ -73,27 +74,20 @@ def planned(config: Mapping[str, Any], *targets: str) -> PlannedStudy:
 
 
 def _plan(results: str, targets: tuple[str, ...]) -> PlannedStudy:
-    from snakemake.cli import main
+    from burridge_knopoff.outputs import outputs, refusal, study_files
+    from snakemake_logger_plugin_study.dry_run import dry_run
 
-    from snakemake_logger_plugin_study.plan import PLAN
-
-    written = os.open("output", os.O_CREAT | os.O_RDWR)
-    os.dup2(written, 1)
-    os.dup2(written, 2)
-    arguments = ["-n", "-c2", "-s", str(ROOT / "Snakefile"), "--configfile", "study.yaml", "--nocolor"]
-    with contextlib.suppress(SystemExit):
-        main([*targets, *arguments])
-    output = Path("output").read_text()
-    if PLAN.workflow is None:
+    plan, output = dry_run([*targets, "-s", str(ROOT / "Snakefile"), "--configfile", "study.yaml"])
+    if plan is None:
         return PlannedStudy(output=output)
     Path(results).mkdir(parents=True)
-    PLAN.record()
-    dag = PLAN.workflow.dag
+    plan.record()
+    dag = plan.workflow.dag
     return PlannedStudy(
         tuple(_job(results, job) for job in (dag.jobs if dag else ()) if job.output),
         read_study_record(results),
-        {file.removeprefix(results): rule for file, rule in PLAN.files.items()},
-        dict(PLAN.refusals),
+        study_files(plan.study),
+        {rule: reason for rule in outputs() if (reason := refusal(plan.study, rule))},
         output,
     )
 

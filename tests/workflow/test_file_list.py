@@ -21,6 +21,7 @@ window: 20
 batches: 2
 without: [attractors, solvers, proof, claims]
 """
+OUTPUTS = '        "unseen": Outputs("summary", "summary/unseen.nc", over="any"),\n'
 RULE = """
 
 use rule mean_distance as unseen with:
@@ -30,6 +31,8 @@ use rule mean_distance as unseen with:
         f"{RESULTS}/logs/unseen.log",
     benchmark:
         f"{RESULTS}/benchmarks/unseen.tsv"
+    params:
+        config=uses("unseen", "synchronization_threshold"),
 """
 SEEN = "summary/mean_distance.nc"
 UNSEEN = "summary/unseen.nc"
@@ -44,6 +47,9 @@ def with_unseen(tmp_path):
         subprocess.run(["cp", "-a", str(REPOSITORY / name), str(tree)], check=True)
     rules = tree / "workflow/rules/summaries.smk"
     rules.write_text(rules.read_text() + RULE)
+    table = tree / "src/burridge_knopoff/outputs.py"
+    before, line, after = table.read_text().partition('        "mean_distance": ')
+    table.write_text(f"{before}{OUTPUTS}{line}{after}")
     return Study(tmp_path / "study", ONE_POINT, tree)
 
 

@@ -4,6 +4,7 @@ import sys
 
 import pytest
 
+from burridge_knopoff.outputs import log_of
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.remarks import remarks
 from burridge_knopoff.study.stages import STAGES
@@ -58,6 +59,8 @@ def test_without_python_flint_a_study_leaves_the_proof_out(monkeypatch):
     assert not [name for name in claims.inputs["summaries"] if "proof" in name]
     reason = "python-flint is not installed: `pip install python-flint`"
     assert study.refusals["proof"] == reason
+    # What was made with it is not left over.
+    assert study.files["summary/proof.nc"].rule == "proof"
     assert remarks(load_study(CONFIG, "some.yaml"), CONFIG) == [f"proof: none, since {reason}"]
     # Nor is anything said if the proof is not asked for, or does not apply.
     for other in ({"without": ["proof"]}, {"laws": {"stribeck": {}}}):
@@ -81,6 +84,16 @@ def test_figures_of_a_study_without_attractors():
     there = planned({**CONFIG, "without": ["attractors"]}).rules
     assert {"figure_mean_distance", "figure_bifurcation_diagram", "figure_distance"} <= there
     assert not {"figure_bifurcations", "figure_branches_reached", "figure_attractor_kinds"} & there
+
+
+@pytest.mark.parametrize("config", [{**CONFIG, **WHOLE}, {**CONFIG, "without": ["attractors"]}, PLANE])
+def test_rules_make_the_files_of_the_table(config):
+    """They are its rules, files and logs."""
+    study = planned(config, "all", *([] if config is PLANE else ["chains"]))
+    made = {file: (job.rule, *job.log) for job in study.jobs for file in job.output}
+    made = {file: job for file, job in made.items() if not file.startswith(("points/", "solvers/"))}
+    assert made == study.files
+    assert all(job.log == (log_of(job.output[0]),) for job in study.jobs)
 
 
 @pytest.mark.slow

@@ -19,9 +19,7 @@ rule attractors_of_law:
         runtime=240,
         cpus_per_task=all_threads,
     params:
-        config=uses(
-            MODEL_OF_LAW, MOTION, "a", "initial", "start", "attractors", "refine", stage="attractors", jobs=LAWS
-        ),
+        config=uses("attractors_of_law", MODEL_OF_LAW, MOTION, "a", "initial", "start", "attractors", "refine"),
         sources=sources("attractors_of_law"),
     message:
         "attractors of the {wildcards.law} law along a"
@@ -48,7 +46,7 @@ rule attractors:
         mem_mb=memory(400),
         cpus_per_task=all_threads,
     params:
-        config=uses(MODELS, "a", "attractors", stage="attractors"),
+        config=uses("attractors", MODELS, "a", "attractors"),
         sources=sources("attractors"),
     message:
         "attractors of all laws"

@@ -1,7 +1,4 @@
 # Basins of attraction: maps over a plane of initial states, computed in tiles and merged.
-MAPS = [{"law": law, "a": a} for law, a in STUDY.basin_maps]
-TILES = [{**basin_map, "tile": f"{tile}"} for basin_map in MAPS for tile in range(STUDY.config["basins"]["tiles"])]
-NO_MAPS = "" if MAPS else "no maps of basins: `basins.a` names no value of a"
 # Keys of a map, besides its law and its a.
 PLANE = [
     *parts(STUDY, "basins", "a", "threads", "pixels", "tiles", "pairs"),
@@ -27,7 +24,7 @@ rule basin_tile:
         runtime=240,
         cpus_per_task=all_threads,
     params:
-        config=uses(MODEL_OF_LAW, "a={a}", PLANE, "basins.pixels", "basins.tiles", stage="basins", jobs=TILES),
+        config=uses("basin_tile", MODEL_OF_LAW, "a={a}", PLANE, "basins.pixels", "basins.tiles"),
         sources=sources("basin_tile"),
     message:
         "basins of the {wildcards.law} law at a = {wildcards.a}, tile {wildcards.tile}"
@@ -51,7 +48,7 @@ rule basin_pairs:
         runtime=240,
         cpus_per_task=all_threads,
     params:
-        config=uses(MODEL_OF_LAW, "a={a}", PLANE, "basins.pairs", stage="basins", jobs=MAPS),
+        config=uses("basin_pairs", MODEL_OF_LAW, "a={a}", PLANE, "basins.pairs"),
         sources=sources("basin_pairs"),
     message:
         "pairs of nearby states, {wildcards.law} law, a = {wildcards.a}"
@@ -63,8 +60,8 @@ rule basins:
     """Merge the tiles and pairs into basin maps."""
     input:
         attractors=rules.attractors.output.attractors,
-        tiles=jobs_of(rules.basin_tile, TILES),
-        pairs=jobs_of(rules.basin_pairs, MAPS),
+        tiles=made("basin_tile"),
+        pairs=made("basin_pairs"),
     output:
         f"{RESULTS}/summary/basins.nc",
         shown("basins.txt", "basins in words", "Attractors"),
@@ -73,9 +70,7 @@ rule basins:
     benchmark:
         f"{RESULTS}/benchmarks/basins.tsv"
     params:
-        config=uses(
-            MODELS, PLANE, "basins.a", "basins.pixels", "basins.tiles", "basins.pairs", stage="basins", refusal=NO_MAPS
-        ),
+        config=uses("basins", MODELS, PLANE, "basins.a", "basins.pixels", "basins.tiles", "basins.pairs"),
         sources=sources("basins"),
     message:
         "maps of basins of attraction"

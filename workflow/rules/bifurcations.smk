@@ -1,7 +1,5 @@
 # Bifurcations and crises of the branches of attractors, and the edge states on the boundaries between their basins.
 
-NO_EDGES = "" if STUDY.config.get("edges", {}).get("a") else "no edge states: add `edges: {}` to its config"
-
 
 rule bifurcations_of_law:
     """Continue the periodic orbits of one friction law in a to the bifurcations at which their branches begin or end."""
@@ -20,7 +18,7 @@ rule bifurcations_of_law:
         runtime=60,
         cpus_per_task=all_threads,
     params:
-        config=uses(MODEL_OF_LAW, "a", stage="bifurcations", jobs=LAWS),
+        config=uses("bifurcations_of_law", MODEL_OF_LAW, "a"),
         sources=sources("bifurcations_of_law"),
     message:
         "bifurcations of the branches of attractors, {wildcards.law} law"
@@ -35,7 +33,7 @@ rule edges_of_law:
         refined=rules.attractors.output.refined,
         returns=rules.attractors_of_law.output.returns,
         # Without bifurcations there are no crises.
-        bifurcations=optional("bifurcations", rules.bifurcations_of_law.output[0]),
+        bifurcations=optional("bifurcations_of_law", rules.bifurcations_of_law.output),
     output:
         f"{RESULTS}/edges/{{law}}.nc",
     log:
@@ -48,7 +46,7 @@ rule edges_of_law:
         runtime=240,
         cpus_per_task=all_threads,
     params:
-        config=uses(MODEL_OF_LAW, "edges", "attractors", stage="edges", jobs=LAWS, refusal=NO_EDGES),
+        config=uses("edges_of_law", MODEL_OF_LAW, "edges", "attractors"),
         sources=sources("edges_of_law"),
     message:
         "edge states between the attractors of the {wildcards.law} law"
@@ -68,7 +66,7 @@ rule edges:
     benchmark:
         f"{RESULTS}/benchmarks/edges.tsv"
     params:
-        config=uses(stage="edges", refusal=NO_EDGES),
+        config=uses("edges"),
         sources=sources("edges"),
     message:
         "edge states of all laws"
@@ -80,7 +78,7 @@ rule bifurcations:
     """Merge the bifurcations of all friction laws."""
     input:
         bifurcations=expand(rules.bifurcations_of_law.output, law=STUDY.laws),
-        edges=[] if NO_EDGES else optional("edges", rules.edges.output[0]),
+        edges=optional("edges", rules.edges.output[0]),
     output:
         f"{RESULTS}/summary/bifurcations.nc",
         shown("bifurcations.txt", "bifurcations in words", "Attractors"),
@@ -89,7 +87,7 @@ rule bifurcations:
     benchmark:
         f"{RESULTS}/benchmarks/bifurcations.tsv"
     params:
-        config=uses(stage="bifurcations"),
+        config=uses("bifurcations"),
         sources=sources("bifurcations"),
     message:
         "bifurcations of all laws"

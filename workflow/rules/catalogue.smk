@@ -1,6 +1,4 @@
 # Catalogues of slip events: one run for each law and a, and the statistics of the events.
-CATALOGUES = [{"law": law, "a": a} for law in STUDY.laws for a in STUDY.catalogue_a]
-NO_CATALOGUE = "" if "catalogue" in STUDY.config else "no catalogues of slip events: add `catalogue: {}` to its config"
 
 
 rule catalogue_of_run:
@@ -17,7 +15,7 @@ rule catalogue_of_run:
         mem_mb=1000,
         runtime=240,
     params:
-        config=uses(MODEL_OF_LAW, "a={a}", catalogue_keys, stage="catalogue", jobs=CATALOGUES, refusal=NO_CATALOGUE),
+        config=uses("catalogue_of_run", MODEL_OF_LAW, "a={a}", catalogue_keys),
         sources=sources("catalogue_of_run"),
     message:
         "slip events, {wildcards.law} law, a = {wildcards.a}"
@@ -28,7 +26,7 @@ rule catalogue_of_run:
 rule catalogue:
     """Count the slip events by magnitude, fit the slope, and measure extents, intervals and recurrence."""
     input:
-        catalogues=jobs_of(rules.catalogue_of_run, CATALOGUES),
+        catalogues=made("catalogue_of_run"),
     output:
         f"{RESULTS}/summary/catalogue.nc",
     log:
@@ -39,10 +37,9 @@ rule catalogue:
         mem_mb=1000,
     params:
         config=uses(
+            "catalogue",
             "laws",
             [f"catalogue.{name}" for name in ("a", "low", "high") if name in STUDY.config.get("catalogue", {})],
-            stage="catalogue",
-            refusal=NO_CATALOGUE,
         ),
         sources=sources("catalogue"),
     message:

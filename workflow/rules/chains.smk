@@ -1,19 +1,4 @@
 # Chains of other lengths: for the target `chains`, or in every run if the config has `chains.blocks`.
-LENGTHS = [
-    # Long chains take longest and start first.
-    {"blocks": f"{blocks}"}
-    for blocks in sorted(STUDY.chain_lengths, reverse=True)
-]
-
-
-rule chains:
-    """Make the summary and the figure of longer chains, even if they are not part of `all`."""
-    input:
-        f"{RESULTS}/summary/chains.nc",
-        f"{RESULTS}/figures/chains.pdf",
-        f"{RESULTS}/figures/chains.png",
-    message:
-        f"longer chains: {RESULTS}/summary/chains.nc and {RESULTS}/figures/chains.png"
 
 
 rule watch_chain:
@@ -31,15 +16,12 @@ rule watch_chain:
         runtime=30,
     params:
         config=uses(
+            "watch_chain",
             [f"laws.{law}" for law in STUDY.config["chains"]["laws"]],
             other_length_keys(STUDY),
             parts(STUDY, "chains", "blocks", "two_blocks"),
             "start",
             "synchronization_threshold",
-            stage="chains",
-            jobs=LENGTHS,
-            refusal=length_refusal(STUDY),
-            by_name="blocks" not in STUDY.config["chains"],
         ),
         sources=sources("watch_chain"),
     message:
@@ -51,7 +33,7 @@ rule watch_chain:
 rule chains_summary:
     """Merge the fractions of synchronizing initial states over chain length and a."""
     input:
-        chains=jobs_of(rules.watch_chain, LENGTHS),
+        chains=made("watch_chain"),
     output:
         f"{RESULTS}/summary/chains.nc",
     log:
@@ -59,7 +41,7 @@ rule chains_summary:
     benchmark:
         f"{RESULTS}/benchmarks/chains.tsv"
     params:
-        config=uses(stage="chains", refusal=length_refusal(STUDY)),
+        config=uses("chains_summary"),
         sources=sources("chains_summary"),
     message:
         "fraction of synchronizing states over number of blocks and a"

@@ -16,12 +16,7 @@ rule claims:
     resources:
         mem_mb=1000,
     params:
-        config=uses(
-            MODELS,
-            *("study", "start", "transient", "window", "initial", "motion"),
-            stage="claims",
-            refusal=condition_refusal(STUDY, "has_paper_chain"),
-        ),
+        config=uses("claims", MODELS, "study", "start", "transient", "window", "initial", "motion"),
         sources=sources("claims"),
         # Another figure leaves the verdicts as they are.
         figures=figures_of_claims,

@@ -2,51 +2,43 @@
 
 #: Priority of the figures of the paper, which are made first, and of the summaries that they show.
 FIRST = 4
-#: The wildcards of the jobs of a rule: of one without wildcards, and of one with a job for each law.
-ONCE = [{}]
-LAWS = [{"law": law} for law in STUDY.laws]
+#: The files of the study, except its points, by their names in the results.
+FILES = study_files(STUDY)
 #: Keys of the config that define the models, and the model under one law; criteria of kinds of motion.
 MODELS = [*MODEL_KEYS]
 MODEL_OF_LAW = ["laws.{law}", *MODELS[1:]]
 MOTION = ["motion", "synchronization_threshold", "section"]
 
 
-def uses(*keys, stage, jobs=ONCE, over="a", refusal="", by_name=False):
-    """Return a params function: the keys of the config that a job uses, with their values.
+def uses(rule, *keys):
+    """Return a params function: the keys of the config that a job of a rule uses, with their values.
 
     keys : names, lists of names, and functions of the wildcards; wildcards stand in braces, as in `laws.{law}`
-    stage : the part of the study to which the rule belongs; a config can leave out some
-    jobs : the wildcards of all jobs of the rule
-    over : the studies that can have the rule: over a alone, over `several` parameters, or over `any`
-    refusal : the reason why this study does not have it; a request of its files is refused with this reason
-    by_name : whether only a request by name makes its files
+    A job that the study does not have is refused with the reason.
     """
-
-    known = {frozenset(job.items()) for job in jobs}
+    jobs = {frozenset(job.items()) for job in outputs()[rule].jobs(STUDY)}
 
     # Snakemake does not compare params that are functions of the output.
     def of_job(wildcards):
-        if frozenset(wildcards.items()) not in known or of_job.refusal:
-            raise ConfigError(f"{dict(wildcards)}: {of_job.refusal or 'this study has no such job'}")
+        reason = refusal(STUDY, rule)
+        if reason or frozenset(wildcards.items()) not in jobs:
+            raise ConfigError(f"{rule} {dict(wildcards)}: {reason or 'this study has no such job'}")
         names = [key(wildcards) if callable(key) else key for key in keys]
         lists = [[name] if isinstance(name, str) else name for name in names]
         used = [name.format(**wildcards) for name in chain.from_iterable(lists)]
         return select(STUDY.config, STUDY.parameters, used)
 
-    of_job.study, of_job.stage, of_job.jobs, of_job.by_name = STUDY, stage, jobs, by_name
-    of_job.refusal = STUDY.omission(stage, over) or refusal
     return of_job
 
 
-def simulates(stage):
-    """Return a params function: the command of a run of some stage."""
+def simulates(rule):
+    """Return a params function: the command of a run."""
 
     def of_job(wildcards):
-        if of_job.refusal:
-            raise ConfigError(f"{dict(wildcards)}: {of_job.refusal}")
+        if reason := refusal(STUDY, rule):
+            raise ConfigError(f"{rule} {dict(wildcards)}: {reason}")
         return STUDY.command(**wildcards)
 
-    of_job.study, of_job.stage, of_job.refusal = STUDY, stage, STUDY.omission(stage, "any")
     return of_job
 
 
@@ -56,14 +48,20 @@ def sources(script, *modules):
     return " ".join([path.name, *modules, source_fingerprint(path, *modules)])
 
 
-def jobs_of(rule, jobs):
-    """Return the output of all jobs of a rule."""
-    return [file for job in jobs for file in expand(rule.output, **job)]
+def made(*names):
+    """Return the outputs of all jobs of some rules, none of a rule that the study does not have."""
+    return [
+        file
+        for name in names
+        if not refusal(STUDY, name)
+        for job in outputs()[name].jobs(STUDY)
+        for file in expand(getattr(rules, name).output, **job)
+    ]
 
 
-def optional(stage, file):
-    """Return a file of a stage, none if the study leaves the stage out."""
-    return [] if STUDY.omission(stage) else file
+def optional(rule, file):
+    """Return a file of a rule, none if the study does not have it."""
+    return [] if refusal(STUDY, rule) else file
 
 
 def shown(name, title, category, paper="none"):
@@ -79,8 +77,7 @@ def shared_cores(wildcards):
     The jobs of all laws run at the same time, each with at least two cores, since with one core each they would not end
     together.
     """
-    # Without a number of cores, as on a cluster, there is one.
-    return max(2, (workflow.resource_settings.cores or 1) // len(STUDY.laws))
+    return max(2, internals.requested_cores(workflow) // len(STUDY.laws))
 
 
 def all_threads(wildcards, threads):
@@ -96,7 +93,7 @@ def memory(megabytes):
 def point_files(**values):
     """Return the points at some values of the wildcards, by default all, or the marks of the chunks of all points."""
     if STUDY.is_plane:
-        return expand(rules.chunk.output, chunk=chunks(STUDY))
+        return made("chunk")
     return expand(rules.simulate.output, **{**GRID, **values})
 
 
@@ -139,50 +136,11 @@ def catalogue_keys(wildcards):
 
 def read_by_judges(wildcards):
     """Return the summaries of the study that judges read."""
-    names = [f"{RESULTS}/summary/{name}.nc" for name in READS]
-    return [name for name in names if name in FILES]
+    names = [f"summary/{name}.nc" for name in READS]
+    return [f"{RESULTS}/{name}" for name in names if name in FILES and not refusal(STUDY, FILES[name].rule)]
 
 
 def figures_of_claims(wildcards):
     """Return the names of the figures to which claims refer."""
     named = {claim.figure for claim in CLAIMS.values()}
-    return sorted(name for name in named if f"{RESULTS}/figures/{name}.png" in FILES)
-
-
-# {file of the study, except points: its rule and its log}; the files that only a request by name makes; {rule or file
-# that the study does not have: why}. Filled in by `add_files` when all rules are known.
-FILES, BY_NAME, REFUSALS = {}, set(), {}
-
-
-def files_in(*starts, suffix=""):
-    """Return an input function: those files of the study that `all` makes, by the start and the end of their names."""
-    starts = tuple(f"{RESULTS}/{start}" for start in starts)
-    return lambda wildcards: [
-        file for file in FILES if file not in BY_NAME and file.startswith(starts) and file.endswith(suffix)
-    ]
-
-
-def params_of(rule):
-    """Return the params function of a rule that says what its jobs use; None for rules of other studies and workflows."""
-    return next((param for param in rule.params if getattr(param, "study", None) is STUDY), None)
-
-
-def add_files():
-    """Fill in `FILES`, `BY_NAME` and `REFUSALS` from the rules of this study and the jobs that their params name."""
-    for item in workflow.rules:
-        params = params_of(item)
-        if params and params.refusal:
-            REFUSALS[item.name] = params.refusal
-        # Points follow from the grid.
-        if not hasattr(params, "jobs"):
-            continue
-        reads = {f"{file}" for file in item.input if not is_callable(file)}
-        reason = params.refusal or next((REFUSALS[file] for file in reads if file in REFUSALS), "")
-        for job in params.jobs:
-            made = [apply_wildcards(f"{file}", job) for file in item.output]
-            if reason:
-                REFUSALS.update(dict.fromkeys(made, reason))
-                continue
-            FILES.update(dict.fromkeys(made, (item, apply_wildcards(f"{item.log[0]}", job))))
-            if params.by_name or reads & BY_NAME:
-                BY_NAME.update(made)
+    return sorted(name for name in named if f"figures/{name}.png" in FILES)

@@ -1,27 +1,5 @@
 # Figures, as PDF for print and PNG for the screen: a rule for each module of burridge_knopoff.figures with a caption. The
 # module says which summaries it shows, or that it shows runs.
-STATES = [{"initial": initial} for initial in STUDY.initial]
-
-
-rule figures:
-    """Draw all figures of the study."""
-    input:
-        files_in("figures/"),
-
-
-rule curves:
-    """Draw the figures of the paper, or those over several parameters."""
-    input:
-        files_in(
-            *(
-                f"figures/{figure.file.partition('{')[0]}"
-                for figure in figure_descriptions()
-                if figure.paper or STUDY.is_plane
-            )
-        ),
-    message:
-        f"the figures {'over the parameters' if STUDY.is_plane else 'of the paper'} are in {RESULTS}/figures"
-
 
 for figure in figure_descriptions():
     words = figure.title.replace("{initial}", "{wildcards.initial}")
@@ -46,13 +24,7 @@ for figure in figure_descriptions():
             f"{RESULTS}/benchmarks/figure_{figure.file}.tsv"
         priority: FIRST if figure.paper else 0
         params:
-            config=uses(
-                *keys_of(figure),
-                stage="figures",
-                over=figure.over,
-                jobs=STATES if "{initial}" in figure.file else ONCE,
-                refusal=condition_refusal(STUDY, figure.condition),
-            ),
+            config=uses(f"figure_{figure.name}", *keys_of(figure)),
             sources=sources("figure", f"burridge_knopoff.figures.{figure.name}"),
             figure=figure.name,
             caption=figure.caption_of({"initial": "{initial}"}),

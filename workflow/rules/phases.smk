@@ -1,5 +1,4 @@
 # Initial states defined by the phases of their end blocks, and the attractors that they reach under each law.
-NO_PHASES = "" if STUDY.config["phases"]["a"] else "no phases of end blocks: `phases.a` names no value of a"
 
 
 rule phases_of_law:
@@ -19,7 +18,7 @@ rule phases_of_law:
         runtime=60,
         cpus_per_task=all_threads,
     params:
-        config=uses(MODEL_OF_LAW, "phases", "attractors", stage="phases", jobs=LAWS, refusal=NO_PHASES),
+        config=uses("phases_of_law", MODEL_OF_LAW, "phases", "attractors"),
         sources=sources("phases_of_law"),
     message:
         "phases of the end blocks, {wildcards.law} law"
@@ -38,7 +37,7 @@ rule phases:
     benchmark:
         f"{RESULTS}/benchmarks/phases.tsv"
     params:
-        config=uses(stage="phases", refusal=NO_PHASES),
+        config=uses("phases"),
         sources=sources("phases"),
     message:
         "phases of the end blocks, all laws"

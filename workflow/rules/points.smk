@@ -6,13 +6,6 @@ GRID = {
     "initial": STUDY.initial,
     **{word: list(STUDY.parameters[name]) for word, name in STUDY.wildcards.items()},
 }
-CHUNKS = [{"chunk": chunk} for chunk in chunks(STUDY)]
-
-
-rule points:
-    """Simulate all points: each friction law from each initial state at each a, or at each point of the grid."""
-    input:
-        all_point_files,
 
 
 rule simulate:
@@ -30,7 +23,7 @@ rule simulate:
         mem_mb=150,
         runtime=10,
     params:
-        command=simulates("points"),
+        command=simulates("simulate"),
         sources=source_fingerprint("burridge_knopoff.dataset.point"),
     message:
         "simulate {wildcards.law} law, initial state {wildcards.initial}, "
@@ -55,7 +48,7 @@ rule chunk:
         mem_mb=250,
         runtime=120,
     params:
-        config=uses(point_keys(STUDY), stage="points", over="several", jobs=CHUNKS),
+        config=uses("chunk", point_keys(STUDY)),
         sources=sources("chunk"),
     message:
         "simulate the points of chunk {wildcards.chunk}"

@@ -6,9 +6,9 @@ rule report:
     input:
         # The page draws the moving blocks of single runs.
         points=[] if STUDY.is_plane else all_point_files,
-        claims=files_in("summary/claims", suffix=".json"),
-        summaries=files_in("summary/", suffix=".nc"),
-        figures=files_in("figures/", suffix=".png"),
+        claims=[file for file in SUMMARIES if file.endswith("claims.json")],
+        summaries=[file for file in SUMMARIES if file.endswith(".nc")],
+        figures=[file for file in FIGURES if file.endswith(".png")],
     output:
         f"{RESULTS}/report.html",
     log:
@@ -19,7 +19,7 @@ rule report:
         mem_mb=600,
     params:
         # The report shows the whole config.
-        config=uses(*STUDY.config, stage="report", over="any"),
+        config=uses("report", *STUDY.config),
         sources=sources("report"),
         arguments=CONFIG_ARGUMENTS,
     message:

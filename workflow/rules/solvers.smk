@@ -1,5 +1,4 @@
 # The comparison of the solvers: points at a few values of a, repeated with every other solver of each law.
-REPEATED = solver_points(STUDY)
 
 
 use rule simulate as simulate_solver with:
@@ -18,7 +17,7 @@ use rule simulate as simulate_solver with:
         mem_mb=150,
         runtime=60,
     params:
-        command=simulates("solvers"),
+        command=simulates("simulate_solver"),
     message:
         "simulate {wildcards.law} law by {wildcards.solver}, initial state {wildcards.initial}, a = {wildcards.a}"
 
@@ -27,7 +26,7 @@ rule solvers:
     """Compare independent solvers of the equations of motion."""
     input:
         points=lambda wildcards: point_files(a=STUDY.compared_values),
-        other_points=jobs_of(rules.simulate_solver, REPEATED),
+        other_points=made("simulate_solver"),
     output:
         f"{RESULTS}/summary/solvers.nc",
     log:
@@ -35,7 +34,7 @@ rule solvers:
     benchmark:
         f"{RESULTS}/benchmarks/solvers.tsv"
     params:
-        config=uses(run_keys(STUDY), "initial", "solvers.a", "solvers.step", stage="solvers"),
+        config=uses("solvers", run_keys(STUDY), "initial", "solvers.a", "solvers.step"),
         sources=sources("solvers"),
     message:
         "independent solvers of the same equations"

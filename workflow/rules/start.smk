@@ -3,12 +3,11 @@
 
 
 def record_study():
-    """Record the study, its files and its command in the results folder.
+    """Record the study and its command in the results folder.
 
     The record is no output of a rule. If it were an input of the jobs, even an `ancient` one, Snakemake 9.27 would not
     look at the params of any job in the run that renews it, and would repeat all of them where it is missing.
     """
-    files = {inside(file): inside(log) for file, (_, log) in FILES.items()}
     write_study_record(
         RESULTS,
         STUDY.config,
@@ -16,13 +15,7 @@ def record_study():
         OWNER,
         WRITTEN,
         shlex.join(ARGUMENTS),
-        files,
     )
-
-
-def inside(path):
-    """Return the name of a file in the results."""
-    return path.removeprefix(f"{RESULTS}/")
 
 
 def write_line(text):
@@ -32,7 +25,7 @@ def write_line(text):
 
 def print_remarks():
     """Print what users may not expect of this study, a line each."""
-    made_from = {inside(file): rule.params["sources"] for file, (rule, _) in FILES.items()}
+    made_from = {file: getattr(rules, item.rule).params.sources for file, item in FILES.items()}
     for remark in (
         *remarks(STUDY, GIVEN),
         *change_remarks(changes(STUDY, Path(RESULTS), made_from)),
@@ -47,8 +40,8 @@ def prepare_cluster():
     Jobs of a run that is not over, of other targets of the same study, are left alone. Ends the run, with one line, if
     Slurm does not answer: each job would try for minutes.
     """
-    program = Path(getattr(workflow.executor_settings, "submit_cmd", None) or "")
-    if program.name != "submit.py" or not program.with_name("jobs.py").is_file():
+    program = internals.submit_program(workflow)
+    if not program or program.name != "submit.py" or not program.with_name("jobs.py").is_file():
         return
     answer = subprocess.run(["sh", "-c", "squeue --me --noheader"], capture_output=True, text=True)
     if answer.returncode:
@@ -69,13 +62,9 @@ def prepare_results():
     except OSError as error:
         sys.exit(escape_unprintable(f"{error}"))
     # Shells and Snakemake open these files as they are.
-    for job in workflow.dag.needrun_jobs():
+    for _, job, _ in internals.planned_jobs(workflow):
         remove_links(*job.log, *([job.benchmark] if job.benchmark else []))
-    # With a limit on the rate of jobs Snakemake starts a timer with every job, and each of them checks all ready jobs
-    # every second until the end: after 1,400 jobs, 1,400 threads take two thirds of a core (its issue 3804). Programs
-    # that submit jobs to a cluster need the limit.
-    if not workflow.non_local_exec:
-        workflow.scheduler.job_rate_limiter = None
+    internals.start_no_timers(workflow)
     PLAN.announce()
 
 
@@ -88,22 +77,18 @@ def remove_marks(makes_files):
         write_line(f"{mark}: a point of this chunk is missing or was changed: it {words} made again")
 
 
-add_files()
-PLAN.results, PLAN.workflow, PLAN.study, PLAN.record = RESULTS, workflow, STUDY, record_study
-PLAN.stages = {each.name: params_of(each).stage for each in workflow.rules if params_of(each)}
-PLAN.refusals = REFUSALS
-PLAN.files = {} if IMPORTED else {file: rule.name for file, (rule, _) in FILES.items()}
-# The first figures are a stage of their own, so that the display shows when they are ready.
-PLAN.stages |= dict.fromkeys((FILES[file][0].name for file in rules.curves.input[0]({})), "curves")
+PLAN = Plan(STUDY, RESULTS, workflow, IMPORTED, record_study)
+for handler in internals.log_handlers(workflow):
+    if isinstance(handler, LogHandler):
+        handler.set_plan(PLAN)
 
 # Snakemake has no hook before it decides which jobs to run. Only in the main process, not in jobs, and not while another
 # run writes these files.
-if workflow.is_main_process:
+if internals.is_main_process(workflow):
     # Snakemake would warn of each missing file.
-    OPTIONS = {word.partition("=")[0] for word in sys.argv}
-    if "--report" in OPTIONS and "--report-after-run" not in OPTIONS and not Path(RESULTS).is_dir():
+    if only_reports(sys.argv[1:]) and not Path(RESULTS).is_dir():
         sys.exit(f"--report: {RESULTS} is missing: run the study first, by the same command without --report")
-    IS_DRY_RUN, OTHER_RUN = workflow.output_settings.dryrun, is_locked(Path(RESULTS))
+    IS_DRY_RUN, OTHER_RUN = internals.is_dry_run(workflow), is_locked(Path(RESULTS))
     if not OTHER_RUN:
         remove_marks(runs_jobs(sys.argv[1:]) and not IS_DRY_RUN)
     # A dry run calls no hook.

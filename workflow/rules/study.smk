@@ -7,14 +7,14 @@ import sys
 from itertools import chain
 from pathlib import Path
 
-from snakemake.io import apply_wildcards, is_callable
 from snakemake.utils import update_config
 
 from burridge_knopoff.provenance.kernel_build import KernelError, check_kernel
+from snakemake_logger_plugin_study import internals
 
-# Checked before anything imports the kernel. A dry run needs none.
+# Checked before anything imports the kernel.
 try:
-    check_kernel(compiled=not workflow.output_settings.dryrun)
+    check_kernel(compiled=not internals.is_dry_run(workflow))
 except KernelError as error:
     sys.exit(f"{error}")
 
@@ -24,7 +24,7 @@ from burridge_knopoff.check.study import is_locked
 from burridge_knopoff.claims.paper import CLAIMS, READS
 from burridge_knopoff.figures.description import figure_descriptions
 from burridge_knopoff.messages import command, escape_unprintable
-from burridge_knopoff.proof.scope import LARGEST_V, NONLINEAR_V
+from burridge_knopoff.outputs import outputs, refusal, study_files
 from burridge_knopoff.provenance.files import (
     check_folder,
     display_path,
@@ -35,11 +35,9 @@ from burridge_knopoff.provenance.keys import select
 from burridge_knopoff.provenance.record import check_owner, write_study_record
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.running.settings import SOLVERS
-from burridge_knopoff.study.chunks import chunks, incomplete_chunks
+from burridge_knopoff.study.chunks import incomplete_chunks
 from burridge_knopoff.study.command_line import config_arguments, of_command_line
 from burridge_knopoff.study.keys import (
-    condition_refusal,
-    length_refusal,
     other_length_keys,
     parts,
     point_keys,
@@ -54,10 +52,14 @@ from burridge_knopoff.study.remarks import (
     override_remarks,
     remarks,
 )
-from burridge_knopoff.study.study import solver_points
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
-from snakemake_logger_plugin_study.command_line import check_one_config, runs_jobs
-from snakemake_logger_plugin_study.plan import PLAN
+from snakemake_logger_plugin_study import LogHandler, internals
+from snakemake_logger_plugin_study.command_line import (
+    check_one_config,
+    only_reports,
+    runs_jobs,
+)
+from snakemake_logger_plugin_study.plan import Plan
 
 # Another Snakefile may import this one as a module; it is then the main Snakefile.
 ROOT = Path(f"{workflow.current_basedir}").resolve().parents[1]
@@ -80,8 +82,8 @@ try:
     # Another workflow may have several config files.
     check_one_config([] if IMPORTED else workflow.configfiles)
     # Snakemake has read --config and the file as well, but accepts values that are refused here.
-    READ = workflow.config_settings.config
-    OVERRIDES = of_command_line(workflow.config_settings.config_args or [], READ)
+    ENTRIES, READ = internals.command_line_config(workflow)
+    OVERRIDES = of_command_line(ENTRIES, READ)
     if IMPORTED:
         # The workflow that imports the study passes its config on, including the values of the command line.
         WRITTEN = {
@@ -103,11 +105,8 @@ except (ValueError, OSError) as error:
 
 # The arguments of `snakemake` for this study: of its config, and with the Snakefile of another workflow or folder.
 if IMPORTED:
-    SETTINGS = workflow.config_settings
-    CONFIG_ARGUMENTS = [
-        *(["--configfile", *map(os.path.relpath, SETTINGS.configfiles)] if SETTINGS.configfiles else []),
-        *(["--config", *SETTINGS.config_args] if SETTINGS.config_args else []),
-    ]
+    NAMED = [*map(os.path.relpath, internals.config_files(workflow))]
+    CONFIG_ARGUMENTS = [*(["--configfile"] if NAMED else []), *NAMED, *(["--config"] if ENTRIES else []), *ENTRIES]
 else:
     OTHER_CONFIG = Path(CONFIG_FILE).resolve() != ROOT / "config/paper.yaml"
     CONFIG_ARGUMENTS = config_arguments(CONFIG_FILE if OTHER_CONFIG else None, OVERRIDES)

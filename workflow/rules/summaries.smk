@@ -2,12 +2,6 @@
 POINTS = point_keys(STUDY)
 
 
-rule summary:
-    """Compute all summaries of the study, and the verdicts on the claims of the paper."""
-    input:
-        files_in("summary/"),
-
-
 rule runs:
     """Collect the scalars of all runs, each of which is checked and read once."""
     input:
@@ -22,7 +16,7 @@ rule runs:
     resources:
         runtime=30,
     params:
-        config=uses(POINTS, "motion.period_tolerance", "motion.longest_period", stage="summary", over="any"),
+        config=uses("runs", POINTS, "motion.period_tolerance", "motion.longest_period"),
         sources=sources("runs"),
     message:
         "summary: runs"
@@ -44,7 +38,7 @@ rule mean_distance:
     resources:
         runtime=30,
     params:
-        config=uses("synchronization_threshold", stage="summary", over="any"),
+        config=uses("mean_distance", "synchronization_threshold"),
         sources=sources("mean_distance"),
     message:
         "summary: mean_distance"
@@ -67,7 +61,7 @@ rule bifurcation_diagram:
         mem_mb=1000,
         runtime=30,
     params:
-        config=uses(POINTS, stage="summary"),
+        config=uses("bifurcation_diagram", POINTS),
         sources=sources("bifurcation_diagram"),
     message:
         "summary: bifurcation_diagram"
@@ -88,7 +82,7 @@ rule lyapunov:
     resources:
         runtime=30,
     params:
-        config=uses(MOTION, stage="summary", over="any"),
+        config=uses("lyapunov", MOTION),
         sources=sources("lyapunov"),
     message:
         "summary: lyapunov"
@@ -109,7 +103,7 @@ rule stick_slip:
     resources:
         runtime=30,
     params:
-        config=uses(POINTS, stage="summary"),
+        config=uses("stick_slip", POINTS),
         sources=sources("stick_slip"),
     message:
         "summary: stick_slip"
@@ -135,7 +129,7 @@ rule agreement:
     resources:
         runtime=30,
     params:
-        config=uses(POINTS, "synchronization_threshold", "agreement", stage="summary"),
+        config=uses("agreement", POINTS, "synchronization_threshold", "agreement"),
         sources=sources("agreement"),
     message:
         "summary: agreement"
@@ -155,7 +149,7 @@ rule orbits:
     resources:
         runtime=30,
     params:
-        config=uses(MODELS, "a", stage="summary"),
+        config=uses("orbits", MODELS, "a"),
         sources=sources("orbits"),
     message:
         "summary: orbits"
@@ -174,7 +168,7 @@ rule equilibrium:
     resources:
         runtime=30,
     params:
-        config=uses(MODELS, "a", stage="summary"),
+        config=uses("equilibrium", MODELS, "a"),
         sources=sources("equilibrium"),
     message:
         "summary: equilibrium"

@@ -18,6 +18,7 @@ rule two_blocks:
         cpus_per_task=all_threads,
     params:
         config=uses(
+            "two_blocks",
             "laws",
             other_length_keys(STUDY),
             ["chains.seed", "chains.position", "chains.velocity", "chains.two_blocks"],
@@ -25,8 +26,6 @@ rule two_blocks:
             [f"attractors.{name}" for name in GIVEN_STATE_KEYS],
             # Two blocks may lack the block of the study's section; the sum always exists.
             ["motion", "synchronization_threshold"],
-            stage="two_blocks",
-            refusal=length_refusal(STUDY) or condition_refusal(STUDY, "has_several_laws"),
         ),
         sources=sources("two_blocks"),
     message:

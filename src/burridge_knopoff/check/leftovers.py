@@ -1,32 +1,31 @@
-"""Files of a study that are missing, and files left over from an earlier config, by the record of its runs."""
+"""Files of a study that are missing, and files left over from an earlier config."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
 
 from burridge_knopoff.check.file_names import is_of_workflow
+from burridge_knopoff.outputs import benchmark_of, log_of, study_files
 from burridge_knopoff.study.study import Study, run_files
 
 
 def run_logs(study: Study) -> dict[str, str]:
     """Return {point file: log of the job that simulates it alone}, by their names in the results."""
-    folders = {"points": "simulate", "solvers": "simulate_solver"}
-    parts = ((name, *name.partition("/")[::2]) for name in run_files(study))
-    return {name: f"logs/{folders[folder]}/{rest.removesuffix('.nc')}.log" for name, folder, rest in parts}
+    return {name: log_of(name) for name in run_files(study)}
 
 
-def leftovers(results: Path, study: Study, record: Mapping[str, Any]) -> list[Path]:
-    """Return results, logs and benchmarks of jobs that the study no longer has; record : of its last run.
+def file_logs(study: Study) -> dict[str, str]:
+    """Return {file of a study, except point files: log of its job}, by their names in the results."""
+    return {name: file.log for name, file in study_files(study).items()}
 
-    Files of other names than those of the workflow are never among them, nor are files that a link leads to. There are
-    none by a record of an earlier version, which lists no files.
+
+def leftovers(results: Path, study: Study) -> list[Path]:
+    """Return results, logs and benchmarks of jobs that a study does not have.
+
+    Files of other names than those of the workflow are never among them, nor are files that a link leads to.
     """
-    if not record["files"]:
-        return []
-    files, whole = {**record["files"], **run_logs(study)}, results.resolve()
-    expected_names = {*files, *_logs(files.values())}
+    logs, whole = {**file_logs(study), **run_logs(study)}, results.resolve()
+    expected_names = {*logs, *logs.values(), *map(benchmark_of, logs.values())}
     names = {path: path.relative_to(results).as_posix() for path in sorted(results.rglob("*"))}
     return [
         path
@@ -39,18 +38,12 @@ def leftovers(results: Path, study: Study, record: Mapping[str, Any]) -> list[Pa
     ]
 
 
-def _logs(logs: Iterable[str]) -> set[str]:
-    """Return logs, and the benchmarks of the same jobs."""
-    names = set(logs)
-    return names | {f"benchmarks{log.removeprefix('logs').removesuffix('.log')}.tsv" for log in names}
-
-
-def missing_files(results: Path, record: Mapping[str, Any]) -> dict[str, Path]:
-    """Return {name: log} of the missing files, except those of runs, whose job has started; record : of the last run.
+def missing_files(results: Path, study: Study) -> dict[str, Path]:
+    """Return {name: log} of the missing files, except those of runs, whose job has started.
 
     The job of a file without a log was not requested yet, or waits for other missing files.
     """
-    logs = {name: results / log for name, log in record["files"].items()}
+    logs = {name: results / log for name, log in file_logs(study).items()}
     return {name: log for name, log in logs.items() if log.exists() and not (results / name).exists()}
 
 

@@ -13,6 +13,7 @@ import netCDF4
 
 from burridge_knopoff.check.leftovers import leftovers, missing_files, run_logs
 from burridge_knopoff.messages import command
+from burridge_knopoff.outputs import study_files
 from burridge_knopoff.provenance.bad_file import BadFile
 from burridge_knopoff.provenance.origin import Origin
 from burridge_knopoff.provenance.record import NAME, remake_command
@@ -117,7 +118,7 @@ def check_study(results: str | Path) -> Check:
     results = Path(results)
     record, study = recorded_study(results)
     runs = _runs(results, study)
-    left = leftovers(results, study, record)
+    left = leftovers(results, study)
     notes = []
     if study.name != results.resolve().name:
         notes.append(f"this is study {study.name} under another name: Snakemake expects it in a folder {study.name}")
@@ -128,13 +129,11 @@ def check_study(results: str | Path) -> Check:
         absent = format_count(len(solver_runs), "run")
         notes += [f"not counted: {absent} of other solvers, none of which was requested yet"] if solver_runs else []
         solver_runs = {}
-    if not record["files"]:
-        notes.append(f"not counted: files other than points, which {NAME} does not list: run snakemake")
     if left:
         files = format_count(len(left), "file")
         notes.append(f"left over, with logs and benchmarks: {files}; delete: {command('bk', 'prune', results)}")
-    missing = missing_files(results, record)
-    file_names = [name for name in record["files"] if not name.endswith(".done")]
+    missing = missing_files(results, study)
+    file_names = [name for name in study_files(study) if not name.endswith(".done")]
     rest = {name: missing.get(name, Path()) for name in file_names if name in missing or (results / name).is_file()}
     unknown = {path.relative_to(results).as_posix() for path in results.rglob("*.nc") if not path.name.startswith(".")}
     unknown -= {*runs, *file_names, *(path.relative_to(results).as_posix() for path in left)}
@@ -256,7 +255,7 @@ def check_record(results: Path) -> None:
     if study.name != results.resolve().name:
         raise ValueError(f"{results}: {NAME} is the record of study {study.name}: run snakemake first")
     runs = run_files(study)
-    for name in (*runs, *record["files"]):
+    for name in (*runs, *study_files(study)):
         try:
             check_file(study, results, name, record, runs.get(name))
         except BadFile as error:

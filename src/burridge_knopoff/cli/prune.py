@@ -34,8 +34,7 @@ def run(options: argparse.Namespace) -> int:
     for folder in folders:
         check_record(folder)
     for folder in folders:
-        record, study = recorded_study(folder)
-        left = leftovers(folder, study, record)
+        left = leftovers(folder, recorded_study(folder)[1])
         for path in left:
             print_lines(str(path))
         if not options.dry_run:

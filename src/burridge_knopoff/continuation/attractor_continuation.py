@@ -120,11 +120,11 @@ def continue_attractors(
         grid = [all_searches.index(search) for search in searches]
         attractors = [search.attractors for search in all_searches]
         widest = max((right.a - left.a for left, right in pairwise(models)), default=0.0)
-        a_values = [search.model.a for search in all_searches]
-        branch, side = branches(a_values, attractors, grid, REMEMBERED * widest, matcher)
+        values = [search.model.a for search in all_searches]
+        branch, side = branches(values, attractors, grid, REMEMBERED * widest, matcher)
         lives = _lifetimes_along_a(all_searches, branch, grid, pool)
-    every_model = [search.model for search in all_searches]
-    return Continuation(every_model, grid, attractors, lives, branch, side, upward, downward, samples)
+    all_models = [search.model for search in all_searches]
+    return Continuation(all_models, grid, attractors, lives, branch, side, upward, downward, samples)
 
 
 def _search(search: Search, starts: Sequence[InitialState], start: str) -> Search:
@@ -154,8 +154,8 @@ def _seed_neighbours(
         searches = [before[0]]
         for k, (source, target) in enumerate(pairwise(before)):
             # An attractor that has just been found at the source is continued as well.
-            is_changed = _has_more_attractors(searches[-1], source)
-            searches.append((_seeded_search(searches[-1], target, matcher) if is_changed else seeded.get(k)) or target)
+            has_more = _has_more_attractors(searches[-1], source)
+            searches.append((_seeded_search(searches[-1], target, matcher) if has_more else seeded.get(k)) or target)
         new = [flag or _has_more_attractors(*pair) for flag, *pair in zip(new, searches, before, strict=True)]
     return searches
 

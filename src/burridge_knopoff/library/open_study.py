@@ -12,6 +12,7 @@ import netCDF4
 import xarray
 
 from burridge_knopoff.messages import escape_unprintable, refusal
+from burridge_knopoff.outputs import study_files
 from burridge_knopoff.study.integrity import check_file
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import all_points
@@ -62,7 +63,7 @@ class StudyResults(Mapping[str, xarray.DataTree]):
         self._record, self._study = recorded_study(results)
         self._results = results
         self._points = {self._study.run_file(**run).removesuffix(".nc"): run for run in all_points(self._study)}
-        files = (name.removesuffix(".nc") for name in self._record["files"] if name.endswith(".nc"))
+        files = (name.removesuffix(".nc") for name in study_files(self._study) if name.endswith(".nc"))
         self._summaries = sorted(name for name in files if name.startswith("summary/"))
         self.config = dict(self._study.config)
 

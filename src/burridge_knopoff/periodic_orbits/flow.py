@@ -1,7 +1,7 @@
 """Integration of a state over a time: the final state, the events and the mean of J.
 
-Periodic orbits ask three things of a model: `new_runner`, `rate` and `grazing_distances.distances_of`. Another type of
-model, such as a map, can register these functions for itself.
+Periodic orbits need four functions of a model: `new_runner`, `mean_distance`, `rate` and
+`grazing_distances.distances_of`. Another type of model, such as a map, can register functions of its own for them.
 """
 
 from __future__ import annotations
@@ -61,6 +61,7 @@ def state_after(runner: Runner, start: ChainState, time: float) -> ChainState:
     return end
 
 
+@singledispatch
 def mean_distance(model: Model, start: ChainState, period: float) -> float:
     """Return ⟨J⟩ over one period, starting from a state on an orbit."""
     observer = new_observer(model, [0.0, period])

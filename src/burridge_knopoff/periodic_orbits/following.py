@@ -131,7 +131,7 @@ def follow(
         for point in path:
             simpler = point.reduced_orbit or _passed_orbit(points[-1], point)
             points.append(replace(point, reduced_orbit=simpler))
-            if simpler is not None or not (point.is_grazing or point is path[-1] or continues()):
+            if simpler is not None or not (point is path[-1] or continues()):
                 return points
         if points[-1].is_grazing:
             turned = switch_branch(points[-1])

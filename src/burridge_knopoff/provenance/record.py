@@ -10,7 +10,6 @@ import shlex
 import subprocess
 from collections.abc import Mapping, Sequence
 from functools import cache
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -23,10 +22,8 @@ NAME = "study.json"
 #: {key of a record: its type}
 _TYPES = {
     **dict.fromkeys(("software", "git_commit", "arguments", "config_file"), str),
-    **dict.fromkeys(("given", "config", "grid", "files"), dict),
+    **dict.fromkeys(("given", "config", "grid"), dict),
 }
-#: The name of a file in the results, as the workflow makes it: it leads nowhere else, and is no option of a command.
-_FILE = re.compile(r"[a-zA-Z0-9][\w.=+-]*(/[a-zA-Z0-9][\w.=+-]*)*", re.ASCII)
 _ENTRY = re.compile(r"[a-zA-Z_][\w-]*=.*", re.ASCII | re.DOTALL)
 
 
@@ -52,18 +49,16 @@ def write_study_record(
     config_file: str | Path,
     given: dict[str, Any],
     arguments: str,
-    files: Mapping[str, str],
 ) -> None:
     """Record a study in its folder of results; a record with the same content is left untouched.
 
     config, grid : the config with all defaults, and {parameter: {name in file names: value}}
     config_file, given : the config file and its content
     arguments : arguments of `snakemake` except its targets, quoted for a shell: `--configfile config/mine.yaml`
-    files : {file that the workflow makes in the folder, except points: its log}
     Raises OSError, one line, if the folder cannot be written to.
     """
     path = Path(results, NAME)
-    values = (SOFTWARE, git_commit(), arguments, display_path(config_file), given, config, grid, files)
+    values = (SOFTWARE, git_commit(), arguments, display_path(config_file), given, config, grid)
     text = json.dumps(dict(zip(_TYPES, values, strict=True)), indent=1, ensure_ascii=False) + "\n"
     if not (path.is_file() and path.read_bytes() == text.encode()):
         write_text(path, text)
@@ -77,9 +72,8 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
     config_file : as it was recorded
     given, config : the content of the config file, and the config with all defaults
     grid : {parameter: {name in file names: value}}
-    files : {file that the workflow makes, except points: its log}
 
-    Raises ValueError, one line, if there is no record, or if it has arguments or names of files that no run records.
+    Raises ValueError, one line, if there is no record, or if it has arguments that no run records.
     """
     path = Path(results, NAME)
     try:
@@ -90,15 +84,13 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
         raise ValueError(f"{folder}: {reason if Path(results).exists() else 'this folder does not exist'}") from None
     except (ValueError, RecursionError):
         record = None
-    # Records of earlier versions have more keys, and no list of files.
-    complete = {"files": {}, **record} if isinstance(record, dict) else {}
-    types = {key: type(complete.get(key)) for key in _TYPES}
-    if types != _TYPES or not all(isinstance(log, str) for log in complete["files"].values()):
+    # Records of earlier versions have more keys.
+    if not isinstance(record, dict) or {key: type(record.get(key)) for key in _TYPES} != _TYPES:
         raise _invalid(path)
-    arguments = _recorded_words(complete["arguments"], Path(results))
-    if arguments is None or not all(map(_FILE.fullmatch, chain(*complete["files"].items()))):
+    arguments = _recorded_words(record["arguments"], Path(results))
+    if arguments is None:
         raise _invalid(path)
-    return {**complete, "arguments": arguments}
+    return {**record, "arguments": arguments}
 
 
 def _invalid(path: Path) -> ValueError:

@@ -13,6 +13,7 @@ import xarray
 
 from burridge_knopoff.dataset.point import POINT_VARIABLES
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
+from burridge_knopoff.outputs import study_files
 from burridge_knopoff.provenance.bad_file import BadFile
 from burridge_knopoff.provenance.opening import open_whole
 from burridge_knopoff.provenance.record import read_study_record, study_folder
@@ -102,7 +103,7 @@ def _check(path: Path, folder: Path | None) -> Collection[str]:
     results = folder if path.is_absolute() else Path(os.path.relpath(folder))
     name = path.absolute().relative_to(folder).as_posix()
     check_file(study, results, name, record, run_files(study).get(name))
-    return record["files"]
+    return study_files(study)
 
 
 def open_result(path: str | Path) -> Result:

@@ -43,8 +43,7 @@ def _part_remarks(study: Study, config: Mapping[str, Any]) -> Iterator[str]:
         yield "basins: no map, since no default value of basins.a is on the grid; set basins.a"
     if "claims" not in study.omitted_stages and not study.has_paper_chain:
         yield "claims: none, since they are about the paper's chain of 3 blocks"
-    library = missing_library("proof")
-    if library and study.omission("proof") == library and study.proved_laws:
+    if study.proved_laws and not study.omission("proof") and (library := missing_library("proof")):
         yield f"proof: none, since {library}"
 
 

@@ -21,7 +21,7 @@ from burridge_knopoff.study.grid import parameters_of
 from burridge_knopoff.study.model import model_of
 from burridge_knopoff.study.paper import PAPER_A
 from burridge_knopoff.study.paths import point_file
-from burridge_knopoff.study.stages import CHAIN_LENGTHS, STAGES, missing_library
+from burridge_knopoff.study.stages import CHAIN_LENGTHS, STAGES
 from burridge_knopoff.study.yaml_file import ConfigError
 
 
@@ -162,7 +162,7 @@ class Study:
         if over == "a" and self.is_plane:
             return "a study of several parameters has none: `a: …` in place of `grid: …`"
         if stage not in self.omitted_stages:
-            return missing_library(stage)
+            return ""
         without, needed = self.config["without"], STAGES[stage]
         names = " and ".join(name for name in (stage, needed) if name in without)
         needs = f", which needs {needed}" if needed in without else ""

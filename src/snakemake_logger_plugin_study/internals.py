@@ -1,0 +1,109 @@
+"""What the study and its display take from Snakemake 9 beyond its documented interface, and what each is worth."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from burridge_knopoff.running.cores import available_cores
+
+
+def log_handlers(workflow: Any) -> Sequence[Any]:
+    """Return the log handlers of a run. No event has the dependencies of jobs: without it there is no time left."""
+    return workflow.logger_manager.get_log_handlers()
+
+
+def is_main_process(workflow: Any) -> bool:
+    """Return whether `snakemake` itself reads the workflow, not one that it starts for a job on a cluster.
+
+    Each of these would print the remarks on the study, and remove the marks of chunks that others are making.
+    """
+    return workflow.is_main_process
+
+
+def is_dry_run(workflow: Any) -> bool:
+    """Return whether nothing is run. A dry run calls no hook: it would print no remarks, and need the kernel."""
+    return workflow.output_settings.dryrun
+
+
+def command_line_config(workflow: Any) -> tuple[list[str], Mapping[str, Any]]:
+    """Return the entries of --config and the values that Snakemake has read from them.
+
+    The `config` of a Snakefile is merged already: the command that repeats a run would lack them.
+    """
+    settings = workflow.config_settings
+    return [*(settings.config_args or [])], settings.config
+
+
+def config_files(workflow: Any) -> list[Path]:
+    """Return the config files of the command line, also in a study that another workflow imports."""
+    return [*(workflow.config_settings.configfiles or [])]
+
+
+def requested_cores(workflow: Any) -> int:
+    """Return the number of cores of a run, 1 on a cluster, where `workflow.cores` raises."""
+    return workflow.resource_settings.cores or 1
+
+
+def named_targets(workflow: Any) -> tuple[Collection[str], list[str]]:
+    """Return the targets of the command line, and these with what -R, --until and --omit-from name.
+
+    They are unknown while the Snakefile is read. Without them a misspelt target gets a list of missing input files.
+    """
+    settings = getattr(workflow, "dag_settings", None)
+    if not settings:
+        return (), []
+    return settings.targets, [*settings.targets, *settings.forcerun, *settings.until, *settings.omit_from]
+
+
+def submit_program(workflow: Any) -> Path | None:
+    """Return the program that submits jobs to a cluster, which a profile names. A killed run leaves its jobs there."""
+    command = getattr(workflow.executor_settings, "submit_cmd", None)
+    return Path(command) if command else None
+
+
+def start_no_timers(workflow: Any) -> None:
+    """Let a run on this machine start jobs without a limit on their rate.
+
+    With a limit a timer starts with every job, and each of them checks all ready jobs every second until the end
+    (snakemake/snakemake#3804). 484 points take 5.8 CPU s of Snakemake in place of 13.9, or 12.2 with a high limit by
+    `max-jobs-per-timespan`. Programs that submit jobs to a cluster need the limit.
+    """
+    if not workflow.non_local_exec:
+        workflow.scheduler.job_rate_limiter = None
+
+
+def planned_jobs(workflow: Any) -> Iterator[tuple[int, Any, list[int]]]:
+    """Yield number, job and the numbers of the jobs that it waits for, of all jobs that will make files.
+
+    Rules are in the order of the Snakefile. This and the following two are all of the plan: the stages, the time left
+    and the estimate before a run.
+    """
+    dag, order = workflow.dag, {rule.name: place for place, rule in enumerate(workflow.rules)}
+    numbers = {job: dag.jobid(job) for job in dag.needrun_jobs(exclude_finished=False) if job.output}
+    for job in sorted(numbers, key=lambda job: (order[job.rule.name], numbers[job])):
+        yield numbers[job], job, [numbers[need] for need in dag.dependencies[job] if need in numbers]
+
+
+def requested_jobs(workflow: Any) -> list[Any]:
+    """Return all jobs of the requested files, also those that are up to date."""
+    return [*workflow.dag.jobs]
+
+
+def newer_inputs(workflow: Any) -> list[str]:
+    """Return the existing files that are newer than what was made from them, which is made again."""
+    dag = workflow.dag
+    reasons = (dag.reason(job) for _, job, _ in planned_jobs(workflow))
+    return sorted({file for why in reasons for file in why.updated_input - why.updated_input_run})
+
+
+def usable_cores(workflow: Any) -> int:
+    """Return the number of cores that jobs can use at most: on a cluster it is not limited by this machine."""
+    return available_cores() if workflow.local_exec else sys.maxsize
+
+
+def is_touching(workflow: Any) -> bool:
+    """Return whether the run only sets the times of files, which is not worth a display."""
+    return workflow.touch
