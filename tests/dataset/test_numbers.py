@@ -39,6 +39,5 @@ from burridge_knopoff.summaries.orbit_flags import BifurcationSide, OrbitStatus
     ],
 )
 def test_numbers_keep_their_meaning(kind, names):
-    assert {name.lower(): member.value for name, member in kind.__members__.items()} == {
-        name: number for number, name in names.items()
-    }
+    """There may be more of them."""
+    assert names.items() <= {member.value: member.name.lower() for member in kind}.items()

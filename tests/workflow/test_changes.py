@@ -190,7 +190,7 @@ def entries(job):
         ("motion/chain_synchronization.py", {"watch_chain", "chains_summary", "figure_chains"}),
         ("basins/plane.py", {"basin_tile", "basin_pairs", "basins"}),
         ("basins/initial_phases.py", {"phases_of_law", "phases"}),
-        ("summaries/mean_distance.py", {"mean_distance", "claims"}),
+        ("summaries/mean_distance.py", {"mean_distance"}),
         ("summaries/orbits.py", {"orbits"}),
         ("figures/lyapunov.py", {"figure_lyapunov", "report"}),
         ("figures/style.py", {"figure_motion", "figure_basins"}),
