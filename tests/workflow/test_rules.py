@@ -4,11 +4,12 @@ import sys
 
 import pytest
 
-from burridge_knopoff.outputs import log_of
+from burridge_knopoff.outputs import Outputs, log_of
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.remarks import remarks
 from burridge_knopoff.study.stages import STAGES
 from tests.conftest import quick_first
+from tests.refused import refused
 from tests.workflow.planned import planned
 
 STATES = {"minus": {}, "plus": {}}
@@ -94,6 +95,11 @@ def test_rules_make_the_files_of_the_table(config):
     made = {file: job for file, job in made.items() if not file.startswith(("points/", "solvers/"))}
     assert made == study.files
     assert all(job.log == (log_of(job.output[0]),) for job in study.jobs)
+
+
+def test_a_misspelt_stage_is_an_error():
+    with refused("stage"):
+        Outputs("atractors", "summary/attractors.nc")
 
 
 @pytest.mark.slow
