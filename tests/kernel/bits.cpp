@@ -84,6 +84,9 @@ void finish(Solver &solver, int status, const EventLog &log, const Observer &obs
         solver.values(x.data(), u.data(), slip.data());
     std::vector<double> integral(observer.batch_integral);
     for (size_t k = 0; k < integral.size(); k++) integral[k] += observer.batch_rest[k];
+    std::vector<double> settled(observer.last_at);
+    for (double &time : settled)
+        if (std::isinf(time)) time = time > 0.0 ? NAN : observer.begin;
     write<double>({double(status)});
     write(x);
     write(u);
@@ -95,6 +98,7 @@ void finish(Solver &solver, int status, const EventLog &log, const Observer &obs
     write(integral);
     write(observer.crossings.time);
     write(observer.crossings.value);
+    write(settled);
     write<double>({observer.highest_speed[0], observer.highest_speed[1]});
     write<double>({observer.lowest_force[0], observer.lowest_force[1]});
     write(catalogue.table.time);
@@ -116,7 +120,7 @@ int main() {
         const std::vector<char> stuck = next<char>();
         const bool *sticks = reinterpret_cast<const bool *>(stuck.data());
 
-        auto observed = [&] { return Observer(n, 0.0, edge, times, times, false, 0, MOST_NUMBERS); };
+        auto observed = [&] { return Observer(n, 0.0, edge, times, times, {1e-1, 1e-3}, false, 0, MOST_NUMBERS); };
         auto logged = [&] { return EventLog(n, 0.0, true, rate_limit, false, MOST_NUMBERS); };
         {
             EventLog log = logged();

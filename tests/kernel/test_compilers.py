@@ -44,8 +44,8 @@ CASES = [
     for chain in CHAINS
     for law, contact in zip(LAWS, ("one_sided", "symmetric") * 2, strict=True)
 ]
-RUN = """status, x, U', event times, events, J, positions, velocities, integral of J, crossing times, crossings, speeds,
-forces, times of slip events, moments, energies, energies of dashpots""".replace("\n", " ").split(", ")
+RUN = """status, x, U', event times, events, J, positions, velocities, integral of J, crossing times, crossings, settling,
+speeds, forces, times of slip events, moments, energies, energies of dashpots""".replace("\n", " ").split(", ")
 MANY = "positions", "velocities", "ends"
 LOCKSTEP = [f"{name} in lockstep" for name in (*RUN, "growth")]
 NAMES = [*RUN, "growth", *4 * LOCKSTEP, *(f"{name} by rk4" for name in RUN), *(f"{name} of many" for name in MANY)]
@@ -81,7 +81,10 @@ def kernel_rows(model):
     start = ChainState(position, np.where(stuck, 0.0, velocity), stuck)
 
     def runner_of(solver, catalogue):
-        options = {"observer": new_observer(model, EDGES, TIMES, TIMES), "exponents": exponent_count(model)}
+        options = {
+            "observer": new_observer(model, EDGES, TIMES, TIMES, level=(1e-1, 1e-3)),
+            "exponents": exponent_count(model),
+        }
         runner = Runner(model, solver, step=STEP, keep_events=True, catalogue=catalogue, **options)
         runner.begin(start)
         return runner
@@ -91,8 +94,8 @@ def kernel_rows(model):
         yield from runner.kernel.values()[:2]
         yield from (runner.log.events.times(), runner.log.events.values())
         results, events = runner.observer.results(), catalogue.take()
-        measured = "distance position velocity batch_integral crossing_time crossing highest_speed lowest_force"
-        yield from (results[name] for name in measured.split())
+        measured = "distance position velocity batch_integral crossing_time crossing settling_time"
+        yield from (results[name] for name in (*measured.split(), "highest_speed", "lowest_force"))
         yield from (events[name] for name in ("time", "moment", "energy_released", "energy_damped"))
         if runner.step_key[1] == "series":
             yield runner.exponents.results()["growth"]
