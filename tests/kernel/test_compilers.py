@@ -45,7 +45,8 @@ CASES = [
     for law, contact in zip(LAWS, ("one_sided", "symmetric") * 2, strict=True)
 ]
 RUN = """status, x, U', event times, events, J, positions, velocities, integral of J, crossing times, crossings,
-settling, speeds, forces, times of slip events, moments, energies, energies of dashpots""".replace("\n", " ").split(", ")
+settling times, speeds, forces, times of slip events, moments, energies, energies of dashpots"""
+RUN = RUN.replace("\n", " ").split(", ")
 MANY = "positions", "velocities", "ends"
 LOCKSTEP = [f"{name} in lockstep" for name in (*RUN, "growth")]
 NAMES = [*RUN, "growth", *4 * LOCKSTEP, *(f"{name} by rk4" for name in RUN), *(f"{name} of many" for name in MANY)]

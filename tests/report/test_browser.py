@@ -144,7 +144,7 @@ def test_the_report_of_a_study(browser, reported):
 
 def test_blocks_rest_if_the_reader_wants_no_motion(browser, poor):
     path = poor.folder / "still.html"
-    path.write_text(render(poor.study, replace(poor.sources, points=poor.folder / "points")))
+    path.write_text(render(poor.study, replace(poor.sources, results=poor.folder)))
     reader = Reader(browser, path, reduced_motion="reduce")
     page = reader.page
     page.locator("#blocks").scroll_into_view_if_needed()
