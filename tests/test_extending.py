@@ -134,7 +134,7 @@ def test_the_bifurcation_is_found(extended):
     run(extended, sys.executable, "-c", BIFURCATION)
 
 
-def tested(extended, *arguments):
+def passed(extended, *arguments):
     """Run tests of the extended tree, which have to pass; return their number."""
     ran = run(extended, sys.executable, "-m", "pytest", "-n", "0", "-p", "no:cacheprovider", *arguments)
     return int(re.search(r"(\d+) passed", ran)[1])
@@ -144,14 +144,14 @@ def test_the_tests_ask_for_no_more_than_the_page_says(extended):
     """But for the ledger, which needs the default study."""
     run(extended, sys.executable, "docs/keys.py")
     assert (
-        tested(extended, "-m", "not slow", "tests/claims", "--ignore=tests/claims/test_docs.py", "tests/study") > 1000
+        passed(extended, "-m", "not slow", "tests/claims", "--ignore=tests/claims/test_docs.py", "tests/study") > 1000
     )
-    assert tested(extended, "tests/fuzzing/test_configs.py", "-k", "every_key")
-    assert tested(extended, "tests/claims/test_verdicts.py", "-k", "top_speed") == 4
+    assert passed(extended, "tests/fuzzing/test_configs.py", "-k", "every_key")
+    assert passed(extended, "tests/claims/test_verdicts.py", "-k", "top_speed") == 4
 
 
 def test_the_law_meets_its_obligations(extended):
-    assert tested(extended, "tests/laws", "-k", "quadratic") >= 20
+    assert passed(extended, "tests/laws", "-k", "quadratic") >= 20
 
 
 def test_the_page_shows_what_its_code_prints(extended):

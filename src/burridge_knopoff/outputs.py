@@ -161,10 +161,6 @@ def outputs() -> dict[str, Outputs]:
         "catalogue": Outputs("catalogue", "summary/catalogue.nc", lack=_no_catalogue),
         "watch_chain": Outputs("chains", "chains/blocks{blocks}.nc", _other_lengths, lack=length_refusal),
         "chains_summary": Outputs("chains", "summary/chains.nc", lack=length_refusal),
-        "claims": Outputs(
-            "claims", "summary/claims.json summary/claims.csv summary/claims.md", lack=_meets("has_paper_chain")
-        ),
-        "report": Outputs("report", "report.html", over="any"),
     }
     maker = {name: rule for rule, item in rules.items() for name in item.names.split()}
     for figure in figure_descriptions():
@@ -176,6 +172,9 @@ def outputs() -> dict[str, Outputs]:
             _meets(figure.condition),
             () if figure.of_points else tuple(maker[f"summary/{name}.nc"] for name in figure.inputs),
         )
+    verdicts = "summary/claims.json summary/claims.csv summary/claims.md"
+    rules["claims"] = Outputs("claims", verdicts, lack=_meets("has_paper_chain"))
+    rules["report"] = Outputs("report", "report.html", over="any")
     return rules
 
 
