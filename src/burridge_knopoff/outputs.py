@@ -178,6 +178,12 @@ def outputs() -> dict[str, Outputs]:
     return rules
 
 
+def stage_of(study: Study, rule: str) -> str:
+    """Return the stage of a rule: in a study of several parameters all figures are the curves."""
+    stage = outputs()[rule].stage
+    return "curves" if study.is_plane and stage == "figures" else stage
+
+
 def omission(study: Study, rule: str) -> str:
     """Return why a study does not have the files of a rule, in a line; empty if it has."""
     item = outputs()[rule]

@@ -9,7 +9,7 @@ from typing import Any
 
 from snakemake.logging import logger
 
-from burridge_knopoff.outputs import outputs
+from burridge_knopoff.outputs import outputs, stage_of
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.study import Study
 from snakemake_logger_plugin_study import internals
@@ -43,9 +43,7 @@ class Plan:
 
     def look_ahead(self) -> Run:
         """Return the run of the planned jobs, those that make files, with their known durations."""
-        stages = {rule: item.stage for rule, item in outputs().items()}
-        if self.study.is_plane:
-            stages |= {rule: "curves" for rule, stage in stages.items() if stage == "figures"}
+        stages = {rule: stage_of(self.study, rule) for rule in outputs()}
         requested, available = internals.requested_cores(self.workflow), internals.usable_cores(self.workflow)
         wanted, last = internals.requested_jobs(self.workflow), defaultdict(list)
         cores = min(requested, available)

@@ -4,7 +4,7 @@ WITHOUT = () if "blocks" in STUDY.config["chains"] else ("chains_summary", "figu
 IN_ALL = [rule for rule in outputs() if rule not in WITHOUT]
 SUMMARIES = made(*(rule for rule in IN_ALL if outputs()[rule].names.startswith("summary/")))
 FIGURES = made(*(rule for rule in IN_ALL if outputs()[rule].names.startswith("figures/")))
-CURVES = made(*(f"figure_{figure.name}" for figure in figure_descriptions() if figure.paper or STUDY.is_plane))
+CURVES = made(*(rule for rule in outputs() if stage_of(STUDY, rule) == "curves"))
 
 
 rule points:

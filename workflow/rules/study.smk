@@ -24,7 +24,7 @@ from burridge_knopoff.check.study import is_locked
 from burridge_knopoff.claims.paper import CLAIMS, READS
 from burridge_knopoff.figures.description import figure_descriptions
 from burridge_knopoff.messages import command, escape_unprintable
-from burridge_knopoff.outputs import outputs, refusal, study_files
+from burridge_knopoff.outputs import outputs, refusal, stage_of, study_files
 from burridge_knopoff.provenance.files import (
     check_folder,
     display_path,

@@ -7,9 +7,9 @@ from functools import cache
 
 from burridge_knopoff.outputs import benchmark_of, log_of, outputs, pattern_of
 
-#: Files of earlier versions, and the summaries whose figures had their names.
+#: Summaries and figures of earlier versions.
 _EARLIER = [
-    *("SHA256SUMS", "stretches/{chunk}.done", "summary/grid.nc", "summary/bifurcation.nc"),
+    *("summary/grid.nc", "summary/bifurcation.nc"),
     *(
         f"figures/{name}.{suffix}"
         for name in ("bifurcation", "bifurcation_refined", "bifurcation_diagram_refined", "windows")
@@ -21,11 +21,14 @@ _TEXTS = (".csv", ".html", ".json", ".md", ".pdf", ".png", ".txt")
 
 @cache
 def _pattern() -> re.Pattern[str]:
-    names = [*(name for item in outputs().values() for name in item.names.split()), *_EARLIER]
-    logs = {log_of(name) for name in names} | {"logs/stretch/{chunk}.log"}
+    jobs = [*(item.names.split() for item in outputs().values()), *([name] for name in _EARLIER)]
+    names = [name for files in jobs for name in files]
+    # Of parts, only the first file of a job names its log.
+    logged = {name for files in jobs for name in files if name == files[0] or name.startswith("summary/")}
+    logs = {*map(log_of, logged), "logs/stretch/{chunk}.log"}
     # Earlier versions set corrupt texts and pictures aside.
     corrupt = (f"{name}.corrupt" for name in names if name.endswith(_TEXTS))
-    return pattern_of([*names, *corrupt, *logs, *map(benchmark_of, logs)])
+    return pattern_of([*names, *corrupt, *logs, *map(benchmark_of, logs), "SHA256SUMS", "stretches/{chunk}.done"])
 
 
 def is_of_workflow(name: str) -> bool:
