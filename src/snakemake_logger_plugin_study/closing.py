@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from burridge_knopoff.dataset.decoding import decode_flags
+from burridge_knopoff.dataset.variables import NETCDF_LOCK
 from burridge_knopoff.messages import command
 from burridge_knopoff.provenance.record import NAME, remake_command
 from burridge_knopoff.study.formatting import format_count
@@ -101,7 +102,7 @@ def _flags(path: Path, what: str, name: str) -> str:
     """Return how often each meaning of a flag variable of a summary occurs."""
     import xarray
 
-    with xarray.open_dataset(path) as dataset:
+    with NETCDF_LOCK, xarray.open_dataset(path) as dataset:
         counts = Counter(decode_flags(dataset[name]).values.flat)
     return f"{what}: {', '.join(f'{word} {count}' for word, count in counts.most_common())} ({name} in {path})"
 

@@ -75,6 +75,15 @@ def start_no_timers(workflow: Any) -> None:
         workflow.scheduler.job_rate_limiter = None
 
 
+def run_in_thread(rule: Any, command: str) -> None:
+    """Let the jobs of a rule with a `run` block run in threads of Snakemake, with a shell command that does the same.
+
+    Snakemake starts itself anew for each job with a `run` block, which takes a second, except where a rule has a shell
+    command. It shows that command with -p and in its records, and calls the block.
+    """
+    rule.rule.shellcmd = command
+
+
 def planned_jobs(workflow: Any) -> Iterator[tuple[int, Any, list[int]]]:
     """Yield number, job and the numbers of the jobs that it waits for, of all jobs that will make files.
 

@@ -1,11 +1,13 @@
 # Points: one simulation for each friction law, initial state and value of a, or of several parameters. In a study over a
-# each point is a job; in one over several parameters each chunk of consecutive points is a job.
+# each point is a job; in one over several parameters each chunk of consecutive points is a job. A point takes less time than
+# a start of Python: it is simulated in a thread of Snakemake.
 POINT = STUDY.point_file.removesuffix(".nc")
 GRID = {
     "law": STUDY.laws,
     "initial": STUDY.initial,
     **{word: list(STUDY.parameters[name]) for word, name in STUDY.wildcards.items()},
 }
+STOP = stop_on_interrupt()
 
 
 rule simulate:
@@ -14,8 +16,6 @@ rule simulate:
         f"{RESULTS}/points/{POINT}.nc",
     log:
         f"{RESULTS}/logs/simulate/{POINT}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/simulate/{POINT}.tsv"
     priority: 3
     group:
         "points"
@@ -28,9 +28,11 @@ rule simulate:
     message:
         "simulate {wildcards.law} law, initial state {wildcards.initial}, "
         + ", ".join(f"{name} = {{wildcards.{word}}}" for word, name in STUDY.wildcards.items())
-    # A run that stopped at a limit is a result as well.
-    shell:
-        "{params.command} --out {output} > /dev/null 2> {log} || [ $? = 3 ]"
+    run:
+        run_point_job(STUDY, wildcards, output[0], log[0], RESULTS, STOP)
+
+
+internals.run_in_thread(rules.simulate, "{params.command} --out {output}")
 
 
 rule chunk:

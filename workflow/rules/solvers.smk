@@ -7,8 +7,6 @@ use rule simulate as simulate_solver with:
         f"{RESULTS}/solvers/{{solver}}/{POINT}.nc",
     log:
         f"{RESULTS}/logs/simulate_solver/{{solver}}/{POINT}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/simulate_solver/{{solver}}/{POINT}.tsv"
     wildcard_constraints:
         solver="|".join(SOLVERS),
     group:
@@ -20,6 +18,9 @@ use rule simulate as simulate_solver with:
         command=simulates("simulate_solver"),
     message:
         "simulate {wildcards.law} law by {wildcards.solver}, initial state {wildcards.initial}, a = {wildcards.a}"
+
+
+internals.run_in_thread(rules.simulate_solver, "{params.command} --out {output}")
 
 
 rule solvers:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import netCDF4
 
+from burridge_knopoff.dataset.variables import NETCDF_LOCK
 from burridge_knopoff.provenance.keys import MISSING, difference, value_of
 from burridge_knopoff.provenance.origin import Origin, embedded_origin
 from burridge_knopoff.study.study import Study
@@ -36,7 +37,7 @@ def _origin(path: Path) -> Origin | None:
     with suppress(OSError, RuntimeError, SyntaxError, TypeError, ValueError, AttributeError):
         if path.suffix != ".nc":
             return Origin(**embedded_origin(path))
-        with netCDF4.Dataset(path) as dataset:
+        with NETCDF_LOCK, netCDF4.Dataset(path) as dataset:
             return Origin.from_attributes(vars(dataset))
     return None
 

@@ -12,7 +12,7 @@ from burridge_knopoff.cli.output import print_lines
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.settings import Settings
-from burridge_knopoff.running.status import EXIT_CODE, Status, early_end, none_because
+from burridge_knopoff.running.status import EXIT_CODE, none_because
 from burridge_knopoff.study.formatting import to_ascii, with_error
 
 if TYPE_CHECKING:
@@ -31,8 +31,6 @@ EXAMPLES = """  bk simulate --law linearized --a 0.08 --initial plus --out plus.
 
 #: Settings of the recorded output of a run.
 _KEPT = ("sampling", "events", "event_window", "trajectory", "trajectory_sampling")
-#: Durations that may exceed the run or the window.
-_PARTS = {"trajectory": "run", "event_window": "window"}
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -48,29 +46,17 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Run a simulation, write its file, and print the outcome in a line."""
-    from burridge_knopoff.dataset.point import write_point
-    from burridge_knopoff.running import simulation
-    from burridge_knopoff.running.cost import cost_note
+    from burridge_knopoff.dataset.simulated_point import simulate_point
 
     state = state_of(options) or PAPER_STATES["minus"]
     settings = settings_of(Settings, options)
     model = model_of(options, state)
-    settings.check_chain(model.chain)
-    if cost := cost_note(model, model.begin(state, settings.start), settings):
-        print_lines(f"note: bk simulate: {cost}", file=sys.stderr)
-    trajectory = simulation.run(model, state, settings)
-    write_point(trajectory, options.out)
-    for key, part in _PARTS.items():
-        requested, available = getattr(settings, key), settings.duration if part == "run" else settings.window
-        if requested > available and requested != fields_of(Settings)[key].default:
-            note = f"{key}: {requested:g} is longer than the {part}; all {available:g} time units were recorded"
-            print_lines(f"note: bk simulate: {note}", file=sys.stderr)
-    if trajectory.status == "completed":
-        print_lines(f"{options.out}: {outcome(trajectory)}")
-    else:
-        ended = early_end(Status[trajectory.status.upper()], trajectory.end_time)
-        print_lines(f"note: bk simulate: {options.out}: {ended}; its averages are NaN", file=sys.stderr)
+    trajectory = simulate_point(
+        model, state, settings, options.out, lambda words: print_lines(f"note: bk simulate: {words}", file=sys.stderr)
+    )
+    if trajectory.status != "completed":
         return EXIT_CODE
+    print_lines(f"{options.out}: {outcome(trajectory)}")
     return 0
 
 

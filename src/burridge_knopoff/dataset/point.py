@@ -14,6 +14,7 @@ import numpy as np
 from burridge_knopoff.dataset.variables import (
     DIRECTION,
     KIND,
+    NETCDF_LOCK,
     TIMES,
     YES_OR_NO,
     Variable,
@@ -186,12 +187,9 @@ def write_point(trajectory: Trajectory, path: str | Path) -> None:
     """
     import netCDF4
 
-    from burridge_knopoff.provenance.checksum import add_checksum
-
     def write(name: str) -> None:
-        with netCDF4.Dataset(name, "w", format="NETCDF4") as dataset:
+        with NETCDF_LOCK, netCDF4.Dataset(name, "w", format="NETCDF4") as dataset:
             write_variables(dataset, POINT_VARIABLES, point_values(trajectory), point_attributes(trajectory))
-            add_checksum(dataset)
 
     write_whole(path, write)
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
+from threading import RLock
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from burridge_knopoff.provenance.checksum import NAME, content_checksum
 from burridge_knopoff.provenance.sources import provenance, versions
 
 if TYPE_CHECKING:
@@ -23,6 +25,9 @@ SIMULATED = (
 )
 #: Types of texts: objects, such as names along a dimension, or a column of words, which may be empty.
 TEXT = ("O", "U")
+#: For netCDF files in a process with several threads: HDF5 is not safe for these, and xarray's own lock does not cover
+#: everything that is read when a file is opened.
+NETCDF_LOCK = RLock()
 COMPRESSION_LEVEL = 5
 COMPRESSED_FROM = 64
 
@@ -129,22 +134,30 @@ def write_variables(
     values: Mapping[str, Any],
     attributes: Mapping[str, Any],
 ) -> None:
-    """Write attributes, dimensions and variables into an open netCDF file."""
-    dataset.setncatts(dict(attributes))
+    """Write attributes, dimensions, variables and the checksum of all these into an open netCDF file."""
     scalars = " ".join(name for name, item in variables.items() if item.coordinate and not item.dimensions)
+    sizes: dict[str, int] = {}
+    contents: dict[str, tuple[tuple[str, ...], Any, dict[str, Any]]] = {}
     for name, item in variables.items():
-        array = np.asarray(values[name], dtype=item.dtype)
-        for dimension, size in zip(item.dimensions, array.shape, strict=True):
-            if dimension not in dataset.dimensions:
-                dataset.createDimension(dimension, size)
+        array, named = np.asarray(values[name], dtype=item.dtype), item.all_attributes()
+        sizes |= zip(item.dimensions, array.shape, strict=True)
+        if not item.coordinate:
+            named["coordinates"] = _coordinates(item, scalars)
+        contents[name] = item.dimensions, array, named
+    dataset.setncatts({**attributes, NAME: content_checksum(sizes, attributes, contents)})
+    for name, size in sizes.items():
+        dataset.createDimension(name, size)
+    # All variables are defined before the first is written: HDF5 writes all definitions anew after each change.
+    arrays = []
+    for name, (dimensions, array, named) in contents.items():
         storage: dict[str, Any] = {"fill_value": False}
         if array.size >= COMPRESSED_FROM:
             storage.update(compression="zlib", complevel=COMPRESSION_LEVEL, shuffle=True, chunksizes=array.shape)
-        variable = dataset.createVariable(name, item.dtype, item.dimensions, **storage)
-        named = item.all_attributes()
-        if not item.coordinate:
-            named["coordinates"] = _coordinates(item, scalars)
+        variable = dataset.createVariable(name, array.dtype, dimensions, **storage)
         variable.setncatts(named)
+        variable.set_auto_maskandscale(False)
+        arrays.append((variable, array))
+    for variable, array in arrays:
         variable[...] = array
 
 

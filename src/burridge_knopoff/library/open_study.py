@@ -6,19 +6,16 @@ import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from textwrap import shorten
-from threading import RLock
 
 import netCDF4
 import xarray
 
+from burridge_knopoff.dataset.variables import NETCDF_LOCK
 from burridge_knopoff.messages import escape_unprintable, refusal
 from burridge_knopoff.outputs import study_files
 from burridge_knopoff.study.integrity import check_file
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import all_points
-
-# HDF5 is not thread-safe, and xarray's own lock does not cover everything that is read when a file is opened.
-_LOCK = RLock()
 
 #: Length of a title in a list of summaries.
 LONGEST = 70
@@ -79,7 +76,7 @@ class StudyResults(Mapping[str, xarray.DataTree]):
 
     def __getitem__(self, path: str) -> xarray.DataTree:
         path = path.strip("/")
-        with _LOCK:
+        with NETCDF_LOCK:
             if path in self._points or path in self._summaries:
                 if self._has(path):
                     return xarray.DataTree(self._open(path), name=path.rpartition("/")[2])
@@ -111,7 +108,7 @@ class StudyResults(Mapping[str, xarray.DataTree]):
 
     def _title(self, name: str) -> str:
         try:
-            with _LOCK, netCDF4.Dataset(self._results / f"{name}.nc") as dataset:
+            with NETCDF_LOCK, netCDF4.Dataset(self._results / f"{name}.nc") as dataset:
                 return escape_unprintable(shorten(str(dataset.title), LONGEST, placeholder=" …"))
         except (OSError, AttributeError, RuntimeError):
             return "cannot be read"

@@ -9,7 +9,7 @@ import glob
 import os
 import secrets
 import stat
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TextIO
 
@@ -85,29 +85,38 @@ def write_text(path: str | Path, text: str) -> None:
 
 
 def reserve_room(stream: TextIO | None) -> None:
-    """Reserve room in an empty file to which a stream writes; what is not used is given back at exit.
+    """Reserve room in an empty file to which a stream of this process writes; what is not used is given back at exit.
+
+    Other streams are left alone.
+    """
+    if stream is not None:
+        room = reserved_room(stream)
+        room.__enter__()
+        atexit.register(room.__exit__, None, None, None)
+
+
+@contextlib.contextmanager
+def reserved_room(stream: TextIO) -> Iterator[None]:
+    """Reserve room in an empty file to which a stream writes, and give back what is not used.
 
     A job whose output fills a disk can then still write why it failed. Other streams are left alone.
     """
-    if stream is None:
-        return
-    try:
-        number = stream.fileno()
-        status = os.fstat(number)
-        if not stat.S_ISREG(status.st_mode) or status.st_size or fcntl.fcntl(number, fcntl.F_GETFL) & os.O_APPEND:
-            return
-    except (ValueError, OSError):
-        return
-    # Blanks are no error in a log, if the process is killed. Reserving without writing is not possible everywhere.
-    with contextlib.suppress(OSError):
-        os.pwrite(number, b" " * ROOM, 0)
-    atexit.register(_give_back, stream, number)
-
-
-def _give_back(stream: TextIO, number: int) -> None:
+    number = -1
     with contextlib.suppress(ValueError, OSError):
-        stream.flush()
-        os.ftruncate(number, os.lseek(number, 0, os.SEEK_CUR))
+        status = os.fstat(stream.fileno())
+        appends = fcntl.fcntl(stream.fileno(), fcntl.F_GETFL) & os.O_APPEND
+        if stat.S_ISREG(status.st_mode) and not status.st_size and not appends:
+            number = stream.fileno()
+            # Blanks are no error in a log, if the process is killed. Reserving without writing is not possible
+            # everywhere.
+            os.pwrite(number, b" " * ROOM, 0)
+    try:
+        yield
+    finally:
+        with contextlib.suppress(ValueError, OSError):
+            if number >= 0:
+                stream.flush()
+                os.ftruncate(number, os.lseek(number, 0, os.SEEK_CUR))
 
 
 def check_target(path: str | Path) -> None:

@@ -1,0 +1,78 @@
+"""One point of a study as a job in a thread of Snakemake's own process: the run, its file, its log and its time."""
+
+from __future__ import annotations
+
+import signal
+import threading
+import time
+import traceback
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TextIO
+
+from burridge_knopoff.dataset.simulated_point import simulate_point
+from burridge_knopoff.kernel._core import StopFlag
+from burridge_knopoff.messages import escape_unprintable
+from burridge_knopoff.outputs import benchmark_of
+from burridge_knopoff.provenance.files import remove_links, reserved_room
+from burridge_knopoff.study.job_log import INTERRUPTED
+from burridge_knopoff.study.study import Study
+
+
+def stop_on_interrupt() -> StopFlag:
+    """Return a flag that Ctrl-C sets, for the runs of other threads: Python interrupts the main thread only."""
+    stop = StopFlag()
+    previous = signal.getsignal(signal.SIGINT)
+
+    def interrupt(number: int, frame: object) -> None:
+        stop.set()
+        if callable(previous):
+            previous(number, frame)  # type: ignore[arg-type]
+
+    # Only the main thread can set a handler. Without one a run ends before the process does.
+    if previous is not signal.SIG_IGN and threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, interrupt)
+    return stop
+
+
+def run_point_job(
+    study: Study, wildcards: Mapping[str, str], path: str, log: str, results: str, stop: StopFlag
+) -> None:
+    """Make the point of some wildcards. Its log says what `bk simulate` would print.
+
+    results : folder of the study, which has a file with the wall time and the CPU time of the job as well
+    stop : a flag that ends the run
+    Raises RuntimeError, one line, if the point fails; its log then has the reason.
+    """
+    stop.heed()
+    benchmark = Path(results, benchmark_of(Path(log).relative_to(results).as_posix()))
+    remove_links(log, benchmark)
+    wall, cpu = time.perf_counter(), time.thread_time()
+    with open(log, "w", encoding="utf-8") as stream, reserved_room(stream):
+        try:
+            simulate_point(
+                *study.run_of(**wildcards), path, lambda words: _write(stream, f"note: bk simulate: {words}")
+            )
+        except (Exception, KeyboardInterrupt) as error:
+            _write(stream, _failure(error))
+            # Snakemake reports an exception as a failure of this job alone, and is silent about KeyboardInterrupt.
+            raise RuntimeError(f"{path} was not made, see {log}") from None
+    benchmark.parent.mkdir(parents=True, exist_ok=True)
+    seconds = f"{time.perf_counter() - wall:.4f}\t{time.thread_time() - cpu:.4f}"
+    benchmark.write_text(f"s\tcpu_time\n{seconds}\n", encoding="utf-8")
+
+
+def _failure(error: BaseException) -> str:
+    match error:
+        case KeyboardInterrupt():
+            return f"bk simulate: {INTERRUPTED}"
+        case MemoryError():
+            return "bk simulate: not enough memory"
+        case ValueError() | OSError() | ImportError():
+            return f"bk simulate: {error}"
+    return "".join(traceback.format_exception(error))
+
+
+def _write(stream: TextIO, words: str) -> None:
+    stream.write("".join(f"{escape_unprintable(line)}\n" for line in words.splitlines()))
+    stream.flush()
