@@ -189,6 +189,20 @@ os.replace = killed
 """
 
 
+def failing_points(errors: Mapping[str, str]) -> str:
+    """Return code that raises an error where a point is written, given by the end of its path."""
+    return f"""
+import burridge_knopoff.dataset.simulated_point as module
+write_point = module.write_point
+def provoked(trajectory, path):
+    for name, error in {errors!r}.items():
+        if str(path).endswith(name):
+            raise eval(error)
+    write_point(trajectory, path)
+module.write_point = provoked
+"""
+
+
 def crash(module: str, function: str) -> str:
     """Return code that breaks a function of the package."""
     return f"""

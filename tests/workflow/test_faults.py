@@ -17,6 +17,7 @@ from tests.workflow.faults import (
     check_end,
     crash,
     differences,
+    failing_points,
     failures,
     flag_named,
     killed_at_the_move,
@@ -82,34 +83,35 @@ def test_interrupted_and_terminated(finished, study):
     assert temporaries(study) == []
 
 
-def test_points_that_die(finished, study):
-    """One is killed, one crashes, one runs out of memory: all are named with reason and log; the others are made."""
-    faults = {
-        "points/linearized/plus/a0.0800.nc": killed_at_the_move("a0.0800.nc"),
-        "points/linearized/minus/a0.0500.nc": crash("burridge_knopoff.running.simulation", "run"),
-        "points/nonlinear/plus/a0.2000.nc": out_of_memory("burridge_knopoff.dataset.point", "write_point"),
+def test_points_that_fail(finished, study):
+    """Points in threads of Snakemake: one crashes, one runs out of memory; both are named with reason and log."""
+    errors = {
+        "linearized/minus/a0.0500.nc": "RuntimeError('provoked\\nin two lines')",
+        "nonlinear/plus/a0.2000.nc": "MemoryError()",
     }
-    process = begin(study, "points", environment=broken(study, faults))
+    process = begin(study, "points", environment=broken(study, {"snakemake": failing_points(errors)}))
     assert process.wait() == 1
     screen = (study.folder / "screen").read_text()
-    reasons = failures(screen)
-    logs = {
-        "linearized/plus/a0.0800": "killed",
-        "linearized/minus/a0.0500": "RuntimeError: provoked in two lines",
-        # The message depends on where memory ends: in Python, in a compiled module or in the C library.
-        "nonlinear/plus/a0.2000": "",
+    assert failures(screen) == {
+        "simulate/linearized/minus/a0.0500.log": "RuntimeError: provoked in two lines",
+        "simulate/nonlinear/plus/a0.2000.log": "bk simulate: not enough memory",
     }
-    assert reasons.keys() == {f"simulate/{name}.log" for name in logs}
-    for name, words in logs.items():
-        reason = reasons[f"simulate/{name}.log"]
-        assert reason, reasons
-        assert words in reason
     log = (study.folder / "results/tiny/logs/simulate/linearized/minus/a0.0500.log").read_text()
     assert "Traceback" in log
     assert "Traceback" not in screen
-    assert len([name for name in study.files("points") if "/." not in name]) == 13
-    # The killed job left its temporary file, as may the one without memory if the C library ended it.
-    assert len(temporaries(study)) in (1, 2)
+    assert len(study.files("points")) == 14
+    assert temporaries(study) == []
+    check_end(study, finished, "points", folders=["points"])
+
+
+def test_a_killed_point_ends_the_run(finished, study):
+    """It is Snakemake's own process; the points that were made before are whole, and the next run resumes."""
+    process = begin(study, "points", environment=broken(study, {"snakemake": killed_at_the_move("plus/a0.0800.nc")}))
+    assert process.wait() == -signal.SIGKILL
+    names = {name for name in study.files("points") if "/." not in name}
+    assert not any(name.endswith("plus/a0.0800.nc") for name in names)
+    assert study.ok(flag_named(study.run("points").stderr)) is not None
+    (study.folder / "faults/sitecustomize.py").unlink()
     check_end(study, finished, "points", folders=["points"])
 
 
