@@ -19,6 +19,7 @@ from collections import defaultdict
 from dataclasses import replace
 from pathlib import Path
 
+from burridge_knopoff.outputs import benchmark_of
 from snakemake_logger_plugin_study.dry_run import dry_run
 from snakemake_logger_plugin_study.durations import Durations, measured_seconds
 from snakemake_logger_plugin_study.run import DONE, RUNNING, WAITING
@@ -43,10 +44,16 @@ def recorded(config, cores=2):
     priority = {dag.jobid(job): job.priority for job in dag.jobs}
     run.jobs = dict(sorted(run.jobs.items(), key=lambda item: -priority[item[0]]))
     run.cores = cores
-    took = {number: measured_seconds(job.benchmark, 1) for number, job in run.jobs.items()}
+    files = {dag.jobid(job): job.benchmark or benchmark_of_point(job, run.results) for job in dag.jobs}
+    took = {number: measured_seconds(files[number], 1) for number in run.jobs}
     if missing := [run.jobs[number].name for number, seconds in took.items() if seconds is None]:
         sys.exit(f"{config}: no benchmark file of {missing[0]} and {len(missing) - 1} more: run the study first")
     return run, took
+
+
+def benchmark_of_point(job, results):
+    """Return the file with the time of a point, which has no process of its own."""
+    return Path(results, benchmark_of(Path(job.log[0]).relative_to(results).as_posix())) if job.log else ""
 
 
 def estimates(run, seconds):

@@ -1,6 +1,6 @@
 """`bk`: one module for each command, with DESCRIPTION, EXAMPLES, `add_options` and `run`.
 
-Only the module of the called command is imported, since a study starts `bk simulate` for every point.
+Only the module of the called command is imported, so that it starts fast.
 """
 
 from __future__ import annotations
