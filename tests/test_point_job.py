@@ -98,7 +98,7 @@ def test_a_run_that_ends_early_is_a_result(tmp_path):
     path, log = make(study, tmp_path, point)
     with open_whole(path) as dataset:
         assert dataset["status"][...] != 0
-    assert log.read_text().startswith(f"note: bk simulate: {path}: diverged ")
+    assert log.read_text().startswith(f"note: bk simulate: {path}: the run did not complete: diverged at ")
 
 
 def test_a_flag_ends_a_long_run_in_its_thread(tmp_path):
