@@ -6,9 +6,10 @@ It is replayed from its benchmark files as if it had never run; other programs o
 the estimate at the beginning, and the largest ratio between estimated and true time left after a minute (or a tenth of
 a shorter run); both count as at least 10 s, the smallest time that the display shows.
 
-Then the time on 1, 2, 4 … 256 cores, and the critical path of jobs. The long jobs of a law divide their parts among
-processes (the number of cores divided by that of the laws); their logs contain the time of each part. The time of
-Snakemake itself, and the slowing of jobs by each other, is not included.
+Then, on 1, 2, 4 … 256 cores, the time to the first figure with results, to the figures of the paper, and to the end of
+the study, and the critical path of jobs. The long jobs of a law divide their parts among processes (the number of cores
+divided by that of the laws); their logs contain the time of each part. Points are threads of Snakemake, of which one at
+a time runs Python. The start of Snakemake, and the slowing of jobs by each other, is not included.
 """
 
 import argparse
@@ -26,6 +27,11 @@ from snakemake_logger_plugin_study.run import DONE, RUNNING, WAITING
 
 #: Moments of a run at which the estimate is compared, and the smallest time that the display prints.
 MOMENTS, LEAST = 400, 10.0
+#: Rules whose jobs are threads of Snakemake.
+POINTS = ("simulate", "simulate_solver")
+
+#: Seconds of a point in which no other point can run Python: `snakemake -c1 points`, without the runs themselves.
+SERIAL = 0.03
 
 LONG = re.compile(r"(.+)_of_law law=(\w+)")
 PART = re.compile(r"^(.+): \d+, ([\d.]+) s, the longest ([\d.]+) s(; \d+ from the cache)?$", re.MULTILINE)
@@ -128,10 +134,14 @@ def jobs_on(cores, jobs, seconds, parts):
     laws = sum(job.rule == "attractors_of_law" for job in jobs.values())
     processes = max(1, cores // max(1, laws))
     shared = {number: pieces for number, pieces in parts.items() if pieces}
+    # Threads wait for each other.
+    took = {
+        number: max(value, cores * SERIAL) if jobs[number].rule in POINTS else value
+        for number, value in seconds.items()
+    }
     wide = {
         number: replace(job, threads=processes if number in shared else 1, cores=0.0) for number, job in jobs.items()
     }
-    took = dict(seconds)
     for number, pieces in shared.items():
         spared = sum((total - longest) * (1.0 / jobs[number].threads - 1.0 / processes) for total, longest in pieces)
         took[number] = max(0.0, seconds[number] - spared)
@@ -144,10 +154,15 @@ def on_other_cores(config):
     jobs = run.jobs
     parts = {number: parts_of(run.results, job) for number, job in jobs.items()}
     alone = sum(jobs_on(1, jobs, seconds, parts)[1].values())
-    print(f"{run.results}: {len(jobs)} jobs\n\n| cores | seconds | faster |\n|------:|--------:|-------:|")
+    print(f"{run.results}: {len(jobs)} jobs\n")
+    print("| cores | first figure, s | figures of the paper, s | study, s | faster |")
+    print("|------:|----------------:|------------------------:|---------:|-------:|")
     for cores in (2**power for power in range(9)):
-        took = max(schedule(*jobs_on(cores, jobs, seconds, parts), cores).values())
-        print(f"| {cores:5d} | {took:7.1f} | {alone / took:6.1f} |")
+        ends = schedule(*jobs_on(cores, jobs, seconds, parts), cores)
+        first = min(end for number, end in ends.items() if jobs[number].rule == "figure_mean_distance")
+        curves = max(end for number, end in ends.items() if jobs[number].stage == "curves")
+        took = max(ends.values())
+        print(f"| {cores:5d} | {first:15.1f} | {curves:23.1f} | {took:8.1f} | {alone / took:6.1f} |")
     print("\nthe longest chain:")
     many = 1000 * len(jobs)
     # No job waits for a core.
