@@ -5,12 +5,8 @@ This module imports nothing of the search, so that a figure that reads a name do
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
-
-if TYPE_CHECKING:
-    import xarray
+import xarray
 
 #: Largest number of section crossings that `refined.nc` holds for each attractor.
 CROSSINGS = 300
@@ -67,6 +63,10 @@ def reached_slots(attractors: xarray.Dataset) -> tuple[xarray.DataArray, xarray.
 
     attractors : under one convention; a part of them, for one law, state or a, gives results without this dimension
     """
-    slots = (attractors["branch"] == attractors["initial_branch"]) & (attractors["side"] == attractors["initial_side"])
-    slots &= attractors["branch"] >= 0
-    return slots.any("attractor"), slots.argmax("attractor")
+    names = "branch", "side", "initial_branch", "initial_side"
+    # All have the same coordinates, so that xarray need not compare them.
+    branch, side, initial_branch, initial_side = (attractors[name].variable for name in names)
+    slots = (branch == initial_branch) & (side == initial_side) & (branch >= 0)
+    is_known, slot = slots.any("attractor"), slots.argmax("attractor")
+    coordinates = attractors["initial_branch"].coords
+    return xarray.DataArray(is_known, coordinates), xarray.DataArray(slot, coordinates)

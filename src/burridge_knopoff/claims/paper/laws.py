@@ -191,14 +191,16 @@ def stick_slip_alone(
 
 def _same_attractors(attractors: xarray.Dataset) -> Truth:
     """Return at which a the laws have the same branches of attractors, with the same result on each; over a."""
+    branches, results = (
+        np.stack([attractors[name].sel(law=law).transpose("a", "attractor").values for law in PAPER_LAWS], axis=1)
+        for name in ("branch", "kind")
+    )
     is_same, is_known = [], []
-    for place in range(attractors.sizes["a"]):
-        kinds = []
-        for law in PAPER_LAWS:
-            slots = attractors.isel(a=place).sel(law=law)
-            branch, kind = slots["branch"].values, merge_chaos(slots["kind"].values)
-            kinds.append({int(number): int(kind[branch == number][0]) for number in branch[branch >= 0]})
-        left, right = kinds
+    for pair in zip(branches, merge_chaos(results), strict=True):
+        left, right = (
+            {int(number): int(kind[branch == number][0]) for number in branch[branch >= 0]}
+            for branch, kind in zip(*pair, strict=True)
+        )
         is_known.append(bool(left and right) and MotionKind.UNDETERMINED not in (*left.values(), *right.values()))
         is_same.append(
             left.keys() == right.keys()
