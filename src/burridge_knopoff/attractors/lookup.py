@@ -5,8 +5,12 @@ This module imports nothing of the search, so that a figure that reads a name do
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray
+
+if TYPE_CHECKING:
+    import xarray
 
 #: Largest number of section crossings that `refined.nc` holds for each attractor.
 CROSSINGS = 300
@@ -67,6 +71,6 @@ def reached_slots(attractors: xarray.Dataset) -> tuple[xarray.DataArray, xarray.
     # All have the same coordinates, so that xarray need not compare them.
     branch, side, initial_branch, initial_side = (attractors[name].variable for name in names)
     slots = (branch == initial_branch) & (side == initial_side) & (branch >= 0)
-    is_known, slot = slots.any("attractor"), slots.argmax("attractor")
-    coordinates = attractors["initial_branch"].coords
-    return xarray.DataArray(is_known, coordinates), xarray.DataArray(slot, coordinates)
+    is_known, place = slots.any("attractor"), slots.get_axis_num("attractor")
+    over = attractors["initial_branch"].transpose(*is_known.dims)
+    return over.copy(data=is_known.values), over.copy(data=slots.values.argmax(place))

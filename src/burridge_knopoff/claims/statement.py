@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray
 
 from burridge_knopoff.claims.conventions import judge_conventions
 from burridge_knopoff.claims.evidence import Evidence
@@ -32,30 +32,33 @@ from burridge_knopoff.claims.verdict import (
 )
 from burridge_knopoff.study.formatting import format_values
 
+if TYPE_CHECKING:
+    import xarray
+
 
 @dataclass(frozen=True)
 class Truth:
     """Where a statement is true, over a and perhaps law and initial.
 
     is_true : meaningless where that is not known; is_known : where it is known
-    applies : values that the statement is about
+    applies : values that the statement is about; all by default
     """
 
     is_true: xarray.DataArray
     is_known: xarray.DataArray
-    applies: xarray.DataArray | bool = True
+    applies: xarray.DataArray | None = None
 
     def cases(self, unknown: str = "") -> Iterator[Case]:
         """Yield a case for each law and initial state on which the statement depends, with its name.
 
         unknown : reason not to judge, in which {law}, {initial} and {where}, the values of a, are filled in
         """
-        parts = [part for part in (self.is_true, self.is_known, self.applies) if isinstance(part, xarray.DataArray)]
+        parts = [part for part in (self.is_true, self.is_known, self.applies) if part is not None]
         axes = {name: part[name].values for name in ("law", "initial", "a") for part in parts if name in part.dims}
         # All parts are over the same values, so that xarray need not compare them.
         sizes = {name: len(values) for name, values in axes.items()}
         is_true, is_known, *others = (part.variable.astype(bool).set_dims(sizes).values for part in parts)
-        applies = others[0] if others else np.full(is_true.shape, self.applies)
+        applies = others[0] if others else np.ones(is_true.shape, dtype=bool)
         grid = axes.pop("a")
         for index in np.ndindex(*is_true.shape[:-1]):
             place = {name: str(labels[k]) for (name, labels), k in zip(axes.items(), index, strict=True)}
