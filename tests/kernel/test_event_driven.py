@@ -4,13 +4,13 @@ from itertools import product
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume
 from hypothesis import strategies as st
 
 from burridge_knopoff import InitialState, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import CONTACTS, STARTS
-from tests.conftest import quick_first
+from tests.conftest import quick_first, random_examples
 from tests.flows import check_events, listed
 from tests.reference import reference_events
 from tests.scipy_flow import scipy_events
@@ -88,13 +88,9 @@ def chains(draw):
     return law, a, position, velocity, {"v": v, "contact": contact, "start": start}
 
 
-@pytest.mark.parametrize("examples", quick_first([20, 60], 1))
-def test_random_chains_against_scipy(examples):
+@random_examples(20, 60, chains())
+def test_random_chains_against_scipy(chain):
     """The events, their times within the peer's accuracy, and the state at the end agree."""
-    settings(max_examples=examples)(given(chains())(check_chain))()
-
-
-def check_chain(chain):
     law, a, position, velocity, options = chain
     blocks, v, end = len(position), options["v"], 8.0
     # Eq. 2: springs of 1 between blocks, and of D_i to the driver.
