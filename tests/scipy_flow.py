@@ -11,7 +11,7 @@ from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
 SPACING = 0.00125
-LONGEST_STEP = 0.1
+LONGEST_STEP = 0.2
 #: The velocity of a block that has just started grows from 0 like t²: noise within this time is not a stop.
 FRESH = 2e-3
 ROUNDING = 1e-13

@@ -70,7 +70,7 @@ def test_conventions_agree_with_the_reference(law):
     """The first events decide which attractor `plus` reaches."""
     first = set()
     for contact, start in product(CONTACTS, STARTS):
-        events = check(law, "plus", 0.08, end=60.0, contact=contact, start=start)
+        events = check(law, "plus", 0.08, end=30.0, contact=contact, start=start)
         first.add(tuple(round(float(time), 9) for time, _, _ in events if time < 20.0))
     assert len(first) >= 3
 
