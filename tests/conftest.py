@@ -13,13 +13,14 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import fcntl
 import pickle
 import shutil
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import settings
+from hypothesis import given, settings
+from hypothesis.strategies import SearchStrategy
 
 settings.register_profile("study", deadline=None, derandomize=True, print_blob=True)
 settings.load_profile("study")
@@ -59,6 +60,29 @@ def quick_first(cases: Iterable[Any], count: int) -> list[Any]:
     """Return cases of a test as parameters, all except the first few marked as slow."""
     values = [case if isinstance(case, tuple) else (case,) for case in cases]
     return [pytest.param(*case, marks=pytest.mark.slow if n >= count else ()) for n, case in enumerate(values)]
+
+
+def crossed(cases: Sequence[tuple[Any, ...]], values: Iterable[Any]) -> list[Any]:
+    """Return each case with each value as parameters; slow except for as many as have every case and every value."""
+    return [
+        pytest.param(*case, value, marks=() if n == k % len(cases) else pytest.mark.slow)
+        for k, value in enumerate(values)
+        for n, case in enumerate(cases)
+    ]
+
+
+def random_examples(quick: int, whole: int, *strategies: SearchStrategy[Any]) -> Callable[[Callable], Callable]:
+    """Decorate a test of random examples: a few for the quick tests, more for the slow ones."""
+
+    def decorate(check: Callable) -> Callable:
+        @pytest.mark.parametrize("examples", quick_first([quick, whole], 1))
+        def test(examples: int) -> None:
+            settings(max_examples=examples)(given(*strategies)(check))()
+
+        test.__doc__ = check.__doc__
+        return test
+
+    return decorate
 
 
 @pytest.fixture(scope="session")

@@ -77,7 +77,7 @@ def elements(values: Any) -> list[Any] | None:
 def real_array(values: Any, key: str) -> np.ndarray:
     """Return real numbers of any shape, NaN where masked; raises ValueError, one line, for anything else."""
     try:
-        array = np.ma.asarray(values)
+        array = values if isinstance(values, np.ndarray) else np.ma.asarray(values)
     except (TypeError, ValueError):
         array = np.ma.asarray(None)
     if array.dtype.kind not in "iuf":

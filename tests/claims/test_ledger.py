@@ -158,7 +158,8 @@ def test_csv_has_a_line_for_each_figure(content: dict) -> None:
 
 def test_a_proved_number_is_marked() -> None:
     proof = xarray.Dataset({"critical_a": (("law", "end"), [[0.0800999, 0.0801001]])}, {"law": ["linearized"]})
-    world = {**paper_world(), "proof": proof}
+    world = paper_world()
+    world["proof"] = proof
     world["orbits"]["critical_a"].values[:] = 0.0801, 0.0802
     claims = [CLAIMS["upper_edge"]]
     content = ledger("test", claims, evidence(world), [])

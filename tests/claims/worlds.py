@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from functools import cache
+from typing import Any
 
 import numpy as np
 import xarray
@@ -47,15 +48,30 @@ CONFIG = {
 
 Summaries = dict[str, xarray.Dataset]
 
+#: Selections from the summaries of the paper's world, which nothing alters.
+_SELECTED: dict[Hashable, tuple[Any, object]] = {}
+
+
+class World(Summaries):
+    """Summaries of the paper's world, with read-only arrays; one that a test asks for is copied, to be altered."""
+
+    def __getitem__(self, name: str) -> xarray.Dataset:
+        if self.get(name) is _world().get(name):
+            self[name] = _world()[name].copy(deep=True)
+        return super().__getitem__(name)
+
 
 def evidence(summaries: Summaries, **config: object) -> Evidence:
     """Return the summaries with the paper's setting, parts of which may be replaced."""
-    return Evidence(summaries, {**CONFIG, **config})
+    if not isinstance(summaries, World):
+        return Evidence(summaries, {**CONFIG, **config})
+    is_altered = any(dataset is not _world().get(name) for name, dataset in summaries.items())
+    return Evidence(dict(summaries), {**CONFIG, **config}, selected={**_SELECTED} if is_altered else _SELECTED)
 
 
 def paper_world() -> Summaries:
-    """Return all summaries, new at each call, so that a test may alter them."""
-    return {name: dataset.copy(deep=True) for name, dataset in _world().items()}
+    """Return all summaries; a test may alter them, see `World`."""
+    return World(_world())
 
 
 @cache
@@ -131,6 +147,8 @@ def _world() -> Summaries:
                 values *= np.linspace(1.0, 1.001, values.size).reshape(values.shape)
     world = {"runs": _runs(world["mean_distance"], world["lyapunov"]), **world}
     count_sections(world)
+    for variable in (variable for dataset in world.values() for variable in dataset.data_vars.values()):
+        variable.values.flags.writeable = False
     return world
 
 
@@ -156,9 +174,9 @@ def count_sections(world: Summaries) -> None:
 def judge_means(world: Summaries) -> None:
     """Determine again whether ⟨J⟩ agrees, after a change of means or differences."""
     for name in ("agreement", "two_blocks"):
-        dataset = world[name]
-        if dataset.identical(_world()[name]):
+        if world.get(name) is _world()[name]:
             continue
+        dataset = world[name]
         about = {key: dataset.attrs[key if name == "agreement" else f"agreement_{key}"] for key in AGREEMENT}
         synchronous = dataset["kind"].isin(SYNCHRONOUS).all("law")
         beyond = excess(dataset["difference"], dataset["mean_distance"].max("law", skipna=False), 1e-6, about)

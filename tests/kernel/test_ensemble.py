@@ -10,6 +10,7 @@ from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import CONTACTS
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.runner import Runner
+from tests.conftest import quick_first
 from tests.flows import carry, check_events
 from tests.kernel.test_event_driven import GRAZES
 from tests.scipy_flow import model_events
@@ -77,7 +78,7 @@ def test_one_law_in_other_operations(formula):
     assert check_against_scalar(model, new_ensemble(other), 30, 10.0, tolerance=2e-12) > 100
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", quick_first(range(3), 1))
 @pytest.mark.parametrize("ends", ["open", "ring"])
 @pytest.mark.parametrize("drop", [0.0, 0.1])
 def test_unequal_springs_and_thresholds_and_a_drop_at_the_start(drop, ends, seed):

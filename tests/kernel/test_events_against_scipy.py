@@ -20,7 +20,7 @@ from tests.kernel.test_few_blocks import CHAINS as FEW_BLOCKS
 from tests.kernel.test_networks import CHAINS as NETWORKS
 from tests.kernel.test_networks import rest
 from tests.kernel.test_steep_laws import FORMULAS
-from tests.scipy_flow import model_events, scipy_events
+from tests.scipy_flow import friction_of, model_events, scipy_events
 
 TOLERANCE = 1e-8
 LAWS = "linearized", "nonlinear"
@@ -47,8 +47,10 @@ class Case(NamedTuple):
         assert np.allclose(model.chain.stiffness, stiffness, rtol=1e-15)
         offset = np.linalg.solve(stiffness, np.full(model.blocks, -float(model.law(model.v))))
         slip = np.where(start.stuck, 0, np.where(start.velocity < 0.0, -1, 1))
-        matter = stiffness, np.ones(model.blocks), model.law, model.v, start.position + offset, start.velocity
-        events, position, velocity = scipy_events(*matter, slip, self.end, contact=model.contact, damping=damping)
+        matter = stiffness, np.ones(model.blocks), friction_of(model.law), model.v
+        kind = {"contact": model.contact, "damping": damping}
+        moving = start.position + offset, start.velocity, slip
+        events, position, velocity = scipy_events(*matter, *moving, self.end, **kind)
         return events, np.concatenate([position - offset, velocity])
 
 
@@ -175,8 +177,12 @@ SOLVERS = {
 }
 
 
+#: Of the random chains with dashpots, of every form, law and contact, the first ones.
+LONG = {f"dashpots-{seed}" for seed in range(20, 60)}
+
+
 @pytest.mark.parametrize("solver", SOLVERS)
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.slow if name in LONG else ()) for name in CASES])
 def test_events_against_scipy(name, solver):
     case, expected = solved_by_scipy(name)
     if solver == "map" and not case.model.has_closed_form:

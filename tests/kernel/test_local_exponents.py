@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume
 from hypothesis import strategies as st
 
 from burridge_knopoff import Chain, ChainState, Model, law_of
@@ -10,6 +10,7 @@ from burridge_knopoff.kernel._core import Exponents
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from tests.catalogue.test_stability import rests, rough
+from tests.conftest import random_examples
 from tests.kernel.test_groups import LAWS, at_rest, events
 
 #: Undamped, underdamped and overdamped slips; the last creep under quasi-static loading.
@@ -38,7 +39,9 @@ def end_of(model, start, loading, count):
     return end
 
 
-@given(
+@random_examples(
+    50,
+    150,
     st.integers(1, 40),
     st.sampled_from([*((law, "steady") for law in LAWS), ("carlson_langer", "quasistatic")]),
     st.sampled_from(["one_sided", "symmetric"]),
@@ -50,7 +53,6 @@ def end_of(model, start, loading, count):
     st.integers(1, 60),
     st.integers(0, 10_000),
 )
-@settings(max_examples=150)
 def test_growth_is_that_of_the_chain_as_a_whole(
     blocks, law_and_loading, contact, ends, coupling, speed, dashpots, vectors, count, seed
 ):

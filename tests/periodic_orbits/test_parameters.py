@@ -29,7 +29,7 @@ from burridge_knopoff import (
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.periodic import find_periodic_orbit
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import bifurcations_of, critical_a
-from tests.conftest import quick_first
+from tests.conftest import crossed, quick_first
 from tests.refused import refused
 
 #: a_c of the paper's chain, from interval arithmetic.
@@ -71,19 +71,27 @@ def near(family, a):
     return family.at(a - 1e-3)
 
 
-@pytest.mark.parametrize("parameter", SCALED)
 @pytest.mark.parametrize(
-    ("kind", "a", "accuracy"),
-    [("PITCHFORK", CRITICAL, 2e-11), ("PERIOD_DOUBLING", 0.272317183794, 2e-11), ("GRAZING", 0.035539733583, 2e-10)],
+    ("kind", "a", "accuracy", "parameter"),
+    crossed(
+        [
+            ("PITCHFORK", CRITICAL, 2e-11),
+            ("PERIOD_DOUBLING", 0.272317183794, 2e-11),
+            ("GRAZING", 0.035539733583, 2e-10),
+        ],
+        SCALED,
+    ),
 )
 def test_curves_of_the_synchronized_orbit_under_the_linearized_law(families, parameter, kind, a, accuracy):
     bifurcation = bifurcation_near(near(families["linearized"], a), a)
     check_curve(bifurcation, kind, parameter, a, accuracy)
 
 
-@pytest.mark.parametrize("parameter", ["v", "threshold", "pulling_damping"])
 @pytest.mark.parametrize(
-    ("kind", "a", "accuracy"), [("FOLD", 0.153732155463, 1e-11), ("GRAZING", 0.136770810812, 2e-10)]
+    ("kind", "a", "accuracy", "parameter"),
+    crossed(
+        [("FOLD", 0.153732155463, 1e-11), ("GRAZING", 0.136770810812, 2e-10)], ["pulling_damping", "v", "threshold"]
+    ),
 )
 def test_curves_with_orbits_on_one_side_only(seven_stops, parameter, kind, a, accuracy):
     orbit = (
@@ -107,7 +115,7 @@ def check_curve(bifurcation, kind, parameter, a, accuracy):
         assert (orbit.model, orbit.residual < 1e-10) == (MODEL.at(**{"a": first, parameter: second}), True)
 
 
-@pytest.mark.parametrize("parameter", ["damping", "pulling_damping", "pulling_damping[2]"])
+@pytest.mark.parametrize("parameter", quick_first(["damping", "pulling_damping[2]", "pulling_damping"], 2))
 @pytest.mark.parametrize("first", quick_first([False, True], 1))
 def test_curves_begin_at_0(parameter, first):
     """The parameter is either of the two of the curve; along it no root is bracketed at 0."""

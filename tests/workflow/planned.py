@@ -9,6 +9,7 @@ import pickle
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -58,6 +59,7 @@ class PlannedStudy:
 
 def planned(config: Mapping[str, Any], *targets: str) -> PlannedStudy:
     """Return the jobs that a first run of a study makes for some targets, by default the whole study."""
+    _load_snakemake()
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "study.yaml").write_text(json.dumps(config))
         # Snakemake leaves much behind in its process.
@@ -71,6 +73,14 @@ def planned(config: Mapping[str, Any], *targets: str) -> PlannedStudy:
             os._exit(code)
         assert os.waitpid(child, 0)[1] == 0
         return pickle.loads(Path(folder, "planned").read_bytes())
+
+
+@cache
+def _load_snakemake() -> None:
+    """Import Snakemake with its plugins once, and not in each child, where this takes half of a plan."""
+    from snakemake.cli import get_argument_parser
+
+    get_argument_parser()
 
 
 def _plan(results: str, targets: tuple[str, ...]) -> PlannedStudy:

@@ -1,5 +1,7 @@
 """The rules of studies: which rules a study has, which files it makes, and on which keys these depend."""
 
+import re
+import subprocess
 import sys
 
 import pytest
@@ -10,7 +12,7 @@ from burridge_knopoff.study.remarks import remarks
 from burridge_knopoff.study.stages import STAGES
 from tests.conftest import quick_first
 from tests.refused import refused
-from tests.workflow.planned import planned
+from tests.workflow.planned import ROOT, planned
 
 STATES = {"minus": {}, "plus": {}}
 CONFIG = {"study": "some", "a": [0.05, 0.08], "initial": STATES}
@@ -155,3 +157,14 @@ def test_a_key_is_a_param_of_what_uses_it_and_of_nothing_else(whole, change, rul
     assert before.keys() == other.keys()
     changed = {job.rule for files, job in before.items() if job.params["config"] != other[files].params["config"]}
     assert changed == rules | {"report"}
+
+
+def test_reading_the_rules_imports_no_heavy_library():
+    """Every start of `snakemake` waits for what the rules and its display import."""
+    lines = re.findall(
+        r"^from (?:burridge_knopoff|snakemake_logger)\S* import (?:\([^)]*\)|.*)",
+        "\n".join(path.read_text() for path in sorted((ROOT / "workflow/rules").glob("*.smk"))),
+        re.MULTILINE,
+    )
+    code = "\n".join([*lines, "import sys", "print({'xarray', 'pandas', 'scipy', 'matplotlib'} & {*sys.modules})"])
+    assert subprocess.check_output([sys.executable, "-c", code], text=True) == "set()\n"

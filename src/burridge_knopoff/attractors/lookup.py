@@ -67,6 +67,10 @@ def reached_slots(attractors: xarray.Dataset) -> tuple[xarray.DataArray, xarray.
 
     attractors : under one convention; a part of them, for one law, state or a, gives results without this dimension
     """
-    slots = (attractors["branch"] == attractors["initial_branch"]) & (attractors["side"] == attractors["initial_side"])
-    slots &= attractors["branch"] >= 0
-    return slots.any("attractor"), slots.argmax("attractor")
+    names = "branch", "side", "initial_branch", "initial_side"
+    # All have the same coordinates, so that xarray need not compare them.
+    branch, side, initial_branch, initial_side = (attractors[name].variable for name in names)
+    slots = (branch == initial_branch) & (side == initial_side) & (branch >= 0)
+    is_known, place = slots.any("attractor"), slots.get_axis_num("attractor")
+    over = attractors["initial_branch"].transpose(*is_known.dims)
+    return over.copy(data=is_known.values), over.copy(data=slots.values.argmax(place))

@@ -8,14 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
-
-import xarray
+from typing import TYPE_CHECKING, Any
 
 from burridge_knopoff.attractors.lookup import reached_slots
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.range import Range
 from burridge_knopoff.motion.kind import MotionKind, merge_chaos
+
+if TYPE_CHECKING:
+    import xarray
 
 #: Kinds of motion that repeat.
 PERIODIC_KINDS = (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)
@@ -36,7 +37,7 @@ class Runs:
     @property
     def kind(self) -> xarray.DataArray:
         """Kind of motion of the attractor that a run has reached, or of the run; all chaos is one kind."""
-        return xarray.apply_ufunc(merge_chaos, self.of("agreement", "kind"))
+        return one_chaos(self.of("agreement", "kind"))
 
     @property
     def synchronized(self) -> xarray.DataArray:
@@ -80,7 +81,7 @@ class Reached:
     @property
     def kind(self) -> xarray.DataArray:
         """Kind of motion on the attractor; all chaos is one kind."""
-        return xarray.where(self.is_known, xarray.apply_ufunc(merge_chaos, self.of("kind")), MotionKind.UNDETERMINED)
+        return one_chaos(self.of("kind")).where(self.is_known, MotionKind.UNDETERMINED)
 
     @property
     def synchronized(self) -> xarray.DataArray:
@@ -92,9 +93,8 @@ class Reached:
         """Number of section points, and mean W' of them; NaN where they are not known."""
         count = self.of("section_count")
         is_known = self.is_known & (count >= 0)
-        return xarray.Dataset(
-            {"count": count.where(is_known), "mean": self.of("section_velocity_mean").where(is_known)}
-        )
+        mean = self.of("section_velocity_mean")
+        return count.where(is_known).to_dataset(name="count").assign(mean=mean.where(is_known))
 
     @property
     def _slots(self) -> tuple[xarray.DataArray, xarray.DataArray]:
@@ -102,6 +102,11 @@ class Reached:
             return reached_slots(self.attractors.sel(initial=list(self.initial)))
 
         return self.evidence.cached(("slots", tuple(self.initial)), slots, self.attractors)
+
+
+def one_chaos(kind: xarray.DataArray) -> xarray.DataArray:
+    """Return kinds of motion in which all chaos is one kind."""
+    return kind.copy(data=merge_chaos(kind.values))
 
 
 def reached_attractor(

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray
 
 from burridge_knopoff.claims.conventions import judge_conventions
 from burridge_knopoff.claims.evidence import Evidence
@@ -33,33 +32,39 @@ from burridge_knopoff.claims.verdict import (
 )
 from burridge_knopoff.study.formatting import format_values
 
+if TYPE_CHECKING:
+    import xarray
+
 
 @dataclass(frozen=True)
 class Truth:
     """Where a statement is true, over a and perhaps law and initial.
 
     is_true : meaningless where that is not known; is_known : where it is known
-    applies : values that the statement is about
+    applies : values that the statement is about; all by default
     """
 
     is_true: xarray.DataArray
     is_known: xarray.DataArray
-    applies: xarray.DataArray | bool = True
+    applies: xarray.DataArray | None = None
 
     def cases(self, unknown: str = "") -> Iterator[Case]:
         """Yield a case for each law and initial state on which the statement depends, with its name.
 
         unknown : reason not to judge, in which {law}, {initial} and {where}, the values of a, are filled in
         """
-        applies = self.applies if isinstance(self.applies, xarray.DataArray) else xarray.ones_like(self.is_known, bool)
-        parts = xarray.broadcast(self.is_true.astype(bool), self.is_known.astype(bool), applies.astype(bool))
-        dimensions = [name for name in ("law", "initial") if name in parts[0].dims]
-        for labels in product(*(parts[0][name].values.tolist() for name in dimensions)):
-            place = dict(zip(dimensions, labels, strict=True))
-            is_true, is_known, about = (part.sel(place).values for part in parts)
-            grid = parts[0]["a"].values
-            reason = unknown.format(**place, where=format_values(grid, ~is_known & about))
-            yield Case(", ".join(labels), grid, is_true, is_known, reason, about)
+        parts = [part for part in (self.is_true, self.is_known, self.applies) if part is not None]
+        axes = {name: part[name].values for name in ("law", "initial", "a") for part in parts if name in part.dims}
+        # All parts are over the same values, so that xarray need not compare them.
+        sizes = {name: len(values) for name, values in axes.items()}
+        is_true, is_known, *others = (part.variable.astype(bool).set_dims(sizes).values for part in parts)
+        applies = others[0] if others else np.ones(is_true.shape, dtype=bool)
+        grid = axes.pop("a")
+        for index in np.ndindex(*is_true.shape[:-1]):
+            place = {name: str(labels[k]) for (name, labels), k in zip(axes.items(), index, strict=True)}
+            known, about = is_known[index], applies[index]
+            reason = unknown.format(**place, where=format_values(grid, ~known & about))
+            yield Case(", ".join(place.values()), grid, is_true[index], known, reason, about)
 
 
 @dataclass(frozen=True)

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray
 
 from burridge_knopoff.messages import refusal
+
+if TYPE_CHECKING:
+    import xarray
 
 
 def decode_flags(flags: xarray.DataArray) -> xarray.DataArray:

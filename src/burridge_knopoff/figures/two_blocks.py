@@ -23,7 +23,6 @@ from burridge_knopoff.figures.style import (
     show_all,
     styled,
 )
-from burridge_knopoff.summaries.two_blocks import CHAINS
 
 TITLE = "Two blocks"
 CATEGORY = "Friction laws"
@@ -53,10 +52,10 @@ def draw(two_blocks: xarray.Dataset) -> Figure:
     Each chain of two blocks has two panels.
     """
     strip = 0.4 + 0.1 * two_blocks.sizes["state"]
-    figure = Figure(figsize=(PAGE, 0.6 + len(CHAINS) * (2.1 + strip)), layout="constrained")
-    panels = figure.subplots(2 * len(CHAINS), 1, sharex=True, height_ratios=len(CHAINS) * [2.1, strip])
+    figure = Figure(figsize=(PAGE, 0.6 + len(TITLES) * (2.1 + strip)), layout="constrained")
+    panels = figure.subplots(2 * len(TITLES), 1, sharex=True, height_ratios=len(TITLES) * [2.1, strip])
     entries: dict[object, Artist] = {}
-    for n, chain in enumerate(CHAINS):
+    for n, chain in enumerate(TITLES):
         for handle in draw_panels(panels[2 * n], panels[2 * n + 1], two_blocks.sel(chain=chain)):
             entries.setdefault(handle.get_label(), handle)
     # The panels share the axis of a.
@@ -64,7 +63,7 @@ def draw(two_blocks: xarray.Dataset) -> Figure:
         panel.set_xlabel("")
     legend_below(figure, list(entries.values()))
     below = "initial states for which the laws disagree"
-    label_panels(panels, [title for chain in CHAINS for title in (TITLES[chain], below)])
+    label_panels(panels, [title for chain in TITLES for title in (TITLES[chain], below)])
     return figure
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray
 
 from burridge_knopoff.claims.choice import LooseShare
 from burridge_knopoff.claims.claim import claim
@@ -20,6 +21,9 @@ from burridge_knopoff.claims.verdict import (
 )
 from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.motion.kind import CHAOS, MotionKind
+
+if TYPE_CHECKING:
+    import xarray
 
 #: The two readings of «the same».
 KIND_AND_MEAN, MEAN = "in the kind of motion and in ⟨J⟩", "in ⟨J⟩"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray
 
 from burridge_knopoff.claims.choice import LooseShare, LooseTolerance, Points, Tolerance
 from burridge_knopoff.claims.claim import claim
@@ -39,6 +39,9 @@ from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.study.formatting import format_values
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.plateaux import plateaux
+
+if TYPE_CHECKING:
+    import xarray
 
 #: The reason not to judge the kind of motion of a run.
 UNDETERMINED = "the kind of motion from {initial} under the {law} law is undetermined {where}"
@@ -254,7 +257,7 @@ def plus_largest_exponent(
     exponent, error = (runs[name].isel(exponent=0, initial=0) for name in ("lyapunov_exponent", "lyapunov_error"))
 
     def is_zero(_runs: Runs) -> Truth:
-        zero = xarray.apply_ufunc(is_zero_exponent, exponent, error, kwargs={"settings": settings})
+        zero = exponent.copy(data=is_zero_exponent(exponent.values, error.values, settings))
         return Truth(zero, exponent.notnull() & error.notnull() & np.isfinite(exponent))
 
     def is_regular(motion: Reached) -> Truth:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray
 
 from burridge_knopoff.claims.choice import LooseShare, LooseTolerance, RunPart, Tolerance
 from burridge_knopoff.claims.claim import claim
 from burridge_knopoff.claims.conventions import combine_readings
 from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.outcomes import one_chaos
 from burridge_knopoff.claims.range import BELOW, Range
 from burridge_knopoff.claims.statement import Case, Statement, Truth, decided
 from burridge_knopoff.claims.verdict import (
@@ -33,7 +34,9 @@ from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.motion.kind import SYNCHRONOUS, MotionKind, is_same_result, merge_chaos
 from burridge_knopoff.study.formatting import with_error
 from burridge_knopoff.study.paper import PAPER_LAWS
-from burridge_knopoff.summaries.judgement import excess, same_mean
+
+if TYPE_CHECKING:
+    import xarray
 
 #: The two readings of a nonlinearity that is not relevant.
 ON_ATTRACTORS, FROM_STATES = "on the attractors", "from the paper's states"
@@ -54,6 +57,8 @@ def laws_agree(
     applied to ⟨J⟩ at each a, as in agreement.nc: curves that coincide in a figure may then differ where ⟨J⟩ is small.
     The curve of each state is judged for itself.
     """
+    from burridge_knopoff.summaries.judgement import excess, same_mean
+
     laws = _law_comparison(evidence, initial, a)
     scale = float(laws["mean_distance"].max())
     beyond = excess(laws["difference"], scale, laws.attrs["synchronization_threshold"], laws.attrs)
@@ -89,7 +94,7 @@ def laws_agree_in_kind(
     show either.
     """
     laws = _law_comparison(evidence, initial, a)
-    same, kinds = laws["same_kind"], xarray.apply_ufunc(merge_chaos, laws["kind"])
+    same, kinds = laws["same_kind"], one_chaos(laws["kind"])
     differ = kinds.sel(law=PAPER_LAWS[0], drop=True) != kinds.sel(law=PAPER_LAWS[1], drop=True)
     readings = {
         "with periodic and quasiperiodic motion as two kinds": same.where(~((same == Answer.YES) & differ), Answer.NO),
@@ -191,20 +196,23 @@ def stick_slip_alone(
 
 def _same_attractors(attractors: xarray.Dataset) -> Truth:
     """Return at which a the laws have the same branches of attractors, with the same result on each; over a."""
+    branches, results = (
+        np.stack([attractors[name].sel(law=law).transpose("a", "attractor").values for law in PAPER_LAWS], axis=1)
+        for name in ("branch", "kind")
+    )
     is_same, is_known = [], []
-    for place in range(attractors.sizes["a"]):
-        kinds = []
-        for law in PAPER_LAWS:
-            slots = attractors.isel(a=place).sel(law=law)
-            branch, kind = slots["branch"].values, merge_chaos(slots["kind"].values)
-            kinds.append({int(number): int(kind[branch == number][0]) for number in branch[branch >= 0]})
-        left, right = kinds
+    for pair in zip(branches, merge_chaos(results), strict=True):
+        left, right = (
+            {int(number): int(kind[branch == number][0]) for number in branch[branch >= 0]}
+            for branch, kind in zip(*pair, strict=True)
+        )
         is_known.append(bool(left and right) and MotionKind.UNDETERMINED not in (*left.values(), *right.values()))
         is_same.append(
             left.keys() == right.keys()
             and bool(is_same_result(np.array([*left.values()]), np.array([right[number] for number in left])).all())
         )
-    return Truth(*(xarray.DataArray(values, {"a": attractors["a"]}, "a") for values in (is_same, is_known)))
+    over_a = attractors["branch"].isel(law=0, attractor=0)
+    return Truth(*(over_a.copy(data=np.array(values)) for values in (is_same, is_known)))
 
 
 @claim("Introduction; The linearization", "friction_laws", "mean_distance")

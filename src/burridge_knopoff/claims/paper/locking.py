@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -254,25 +255,31 @@ def _was_torus(bifurcations: xarray.Dataset, refined: xarray.Dataset, branch: in
 
     bifurcations, refined : of one law. Between values of the grid a branch may not have been searched for.
     """
-    a = refined["a"].values
+    a, in_grid, branches, kind = (refined[name].values for name in ("a", "in_grid", "branch", "kind"))
+    changes = {name: bifurcations[name].values for name in ("change", "from_branch", "to_branch", "grid_high")}
     for row in np.flatnonzero(a <= low)[::-1]:
-        kinds = refined["kind"].values[row][refined["branch"].values[row] == branch]
-        if not len(kinds) and refined["in_grid"].values[row] == 1:
+        kinds = {*kind[row][branches[row] == branch].tolist()}
+        if not kinds and in_grid[row] == 1:
             return False
-        if np.isin(kinds, (*CHAOS, MotionKind.TRANSIENT_CHAOS)).any():
+        if not kinds.isdisjoint((*CHAOS, MotionKind.TRANSIENT_CHAOS)):
             return False
-        if (kinds == MotionKind.QUASIPERIODIC).any():
+        if MotionKind.QUASIPERIODIC in kinds:
             return True
-        branch = _predecessor(bifurcations, branch, a[row])
+        branch = _predecessor(changes, branch, a[row])
     return False
 
 
-def _predecessor(bifurcations: xarray.Dataset, branch: int, a: float) -> int:
-    """Return the branch that ends on a branch which begins at an a and leads back to it; the branch itself if none."""
-    to_branch, change = bifurcations["to_branch"].values, bifurcations["change"].values
-    begins = (to_branch == branch) & (change == Change.BEGINNING) & (bifurcations["grid_high"].values == a)
-    ends = (to_branch == branch) & (change == Change.END)
-    sources = [set(bifurcations["from_branch"].values[rows].tolist()) for rows in (begins, ends)]
+def _predecessor(changes: Mapping[str, np.ndarray], branch: int, a: float) -> int:
+    """Return the branch that ends on a branch which begins at an a and leads back to it; the branch itself if none.
+
+    changes : variables of the bifurcations
+    """
+    leads = changes["to_branch"] == branch
+    begins = leads & (changes["change"] == Change.BEGINNING) & (changes["grid_high"] == a)
+    if not begins.any():
+        return branch
+    ends = leads & (changes["change"] == Change.END)
+    sources = [set(changes["from_branch"][rows].tolist()) for rows in (begins, ends)]
     return int(next(iter(sources[0] & sources[1] - {-1}), branch))
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray
 
 from burridge_knopoff.claims.choice import LooseTolerance, Near, Tolerance
 from burridge_knopoff.claims.claim import claim
@@ -28,6 +29,9 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.study.formatting import format_values, span, with_error
 from burridge_knopoff.study.paper import PAPER_LAWS
+
+if TYPE_CHECKING:
+    import xarray
 
 PARTS = ("real", "imaginary")
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray
 
 from burridge_knopoff.claims.choice import LooseShare, Near, Points
 from burridge_knopoff.claims.claim import claim
@@ -19,6 +20,9 @@ from burridge_knopoff.claims.verdict import (
     describe_where,
 )
 from burridge_knopoff.motion.kind import MotionKind
+
+if TYPE_CHECKING:
+    import xarray
 
 #: The reason not to judge if runs are missing.
 NOT_COMPLETED = "too few runs under the {law} law completed {where}"

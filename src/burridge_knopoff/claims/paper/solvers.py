@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray
 
 from burridge_knopoff.claims.choice import LooseShare, LooseTolerance, Much, Relative
 from burridge_knopoff.claims.claim import claim
@@ -29,6 +29,9 @@ from burridge_knopoff.claims.verdict import (
 from burridge_knopoff.motion.kind import MotionKind, is_same_result
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.study.paper import PAPER_LAWS
+
+if TYPE_CHECKING:
+    import xarray
 
 PAPER_STEPPING = "the paper's time stepping"
 
@@ -67,7 +70,8 @@ def solutions_agree(
     def same_result(motion: Runs | Reached) -> Truth:
         kind, other = (motion.kind.sel(law=law, drop=True) for law in PAPER_LAWS)
         known = (kind != MotionKind.UNDETERMINED) & (other != MotionKind.UNDETERMINED)
-        return Truth(xarray.apply_ufunc(is_same_result, kind, other), known & kind.notnull() & other.notnull())
+        same = kind.copy(data=is_same_result(kind.values, other.values))
+        return Truth(same, known & kind.notnull() & other.notnull())
 
     def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
         """Judge as if the solvers agreed at the same points under every convention."""
