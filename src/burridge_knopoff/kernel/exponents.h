@@ -112,7 +112,7 @@ class Exponents {
         const int c = lane / LANES, own = lane % LANES;
         const Blocks::vec force = state.force(c);
         if (!starts) {
-            deceleration[i] = state.slip_acceleration(c, force)[own];
+            deceleration[i] = state.slip_acceleration(c, force, Blocks::from_bits(1 << own))[own];
             stopped.push_back(i);
             for (int v = 0; v < tangent.vectors; v++) {
                 lost_speed[size_t(v) * blocks + i] = u(v)[i];

@@ -63,7 +63,7 @@ class Tangent {
         const vec zero{}, force = state.force(c);
         const mask stops = where & (state.slip[c] != zero), starts = where & ~stops;
         if (any(stops)) {
-            deceleration[c] = select(stops, state.slip_acceleration(c, force), deceleration[c]);
+            deceleration[c] = select(stops, state.slip_acceleration(c, force, stops), deceleration[c]);
             for (int v = 0; v < vectors; v++) {
                 vec &u = velocity[size_t(v) * columns + c], &kept = lost[size_t(v) * columns + c];
                 kept = select(stops, u, kept);
