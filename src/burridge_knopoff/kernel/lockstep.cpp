@@ -354,7 +354,7 @@ void Lockstep::follow(vec length) {
     const mask where = active & running & moving;
     tangent.forget_stops(active & running);
     if (!any(where)) return;
-    tangent.load(state, series, length, where, [this](int lane) -> const Model & { return own[lane]->model; });
+    tangent.load(state, series, length, where);
     for (int done = 1;; done++) {
         tangent.follow(layout);
         if (tangent.most_parts() <= done) return;
