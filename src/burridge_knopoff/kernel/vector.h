@@ -122,6 +122,9 @@ BK_INLINE V largest(V a, V b) {
     BK_INSTRUCTION(max_pd, a, b);
     return a > b ? a : b;
 }
+BK_INLINE double root(double a) {
+    return std::sqrt(a);
+}
 template <class V>
 BK_INLINE V root(V a) {
     BK_INSTRUCTION(sqrt_pd, a);
