@@ -77,7 +77,8 @@ double Run::fade(Group &group) {
             slow.u[m] = state.velocity.lane(lane);
             slow.direction[m] = state.slip.lane(lane);
             slow.rate[m] = alone[i].fades ? state.acceleration.lane(lane)
-                                          : state.slip_acceleration(c, state.force(c))[lane % LANES];
+                                          : state.slip_acceleration(c, state.force(c),
+                                                                    Blocks::from_bits(1 << lane % LANES))[lane % LANES];
             fades &= alone[i].fades;
         }
         return fades;

@@ -139,15 +139,15 @@ class EventSearch {
     // Where blocks have the event that was found: their g is the same to the bit, as for mirror images. Their events
     // are then simultaneous, regardless of rounding errors at that time.
     mask due(const Series<L> &series, int c) const {
-        mask same = found & series.layout.present[c];
         // The block itself need not be compared.
-        const int own = L::ONE_CLOCK && block[0] / LANES == c ? 1 << block[0] % LANES : 0;
-        for (int k = 0; k <= ORDER && bits(same) != own; k++) {
+        const mask itself = found & is_block(c);
+        mask others = found & series.layout.present[c] & ~itself;
+        for (int k = 0; k <= ORDER && any(others); k++) {
             const size_t row = size_t(k) * width;
             const vec of_block = L::ONE_CLOCK ? L::splat(series.gap.lane(row * LANES + block[0])) : candidate[k];
-            same &= series.gap[row + c] == of_block;
+            others &= series.gap[row + c] == of_block;
         }
-        return same;
+        return itself | others;
     }
 
     // The time at which W changes its sign in the first `length` of the reach; NONE if it does not, UNCERTAIN if a
@@ -184,18 +184,21 @@ class EventSearch {
     int columns, width;
     typename L::Rows root_at, lowest, highest, zeros;
     vec *const power, *const scaled, *const quotient, *const candidate;
-    int block[LANES];
+    // The block that was found for each clock, −1 for none; for a single clock the same in all lanes.
+    mask block;
     bool aimed = false;  // whether the candidate is the block that was found
     Number crossing, fall;
     vec reach_of_bounds;
     mask contested;
     Polynomial &polynomial;
 
-    // Clocks for which a column has the event, if each column is a block.
-    mask is_block(int c) const {
-        mask own;
-        for (int lane = 0; lane < LANES; lane++) own[lane] = -int64_t(block[lane] == c);
-        return own;
+    // The lanes of a column that have the event.
+    mask is_block(int c) const { return block == numbers(c); }
+    // The numbers of the blocks in a column.
+    static BK_INLINE mask numbers(int c) {
+        mask number = mask{} + (L::ONE_CLOCK ? c * LANES : c);
+        for (int lane = 0; lane < LANES && L::ONE_CLOCK; lane++) number[lane] += lane;
+        return number;
     }
 
     // The column of W in g, and the value of a row there for each clock.
@@ -298,13 +301,13 @@ class EventSearch {
         first = L::least_of_clock(first);
         found = (first <= reach) & where;
         time = select(found, first, reach);
-        for (int lane = 0; lane < LANES; lane++)
-            if (where[lane]) block[lane] = -1;
+        block = select(where, mask{} - 1, block);
         for (int c = columns - 1; c >= 0; c--) {
             const mask own = found & (root_at[c] == time) & series.layout.present[c];
-            const int which = bits(own);
-            for (int lane = LANES - 1; lane >= 0 && which; lane--)
-                if (which >> lane & 1) block[L::ONE_CLOCK ? 0 : lane] = L::ONE_CLOCK ? c * LANES + lane : c;
+            if (!L::ONE_CLOCK)
+                block = select(own, mask{} + c, block);
+            else if (any(own))
+                block = mask{} + (c * LANES + __builtin_ctz(bits(own)));
         }
     }
 
@@ -315,21 +318,20 @@ class EventSearch {
 
     // Refine the earliest guess of each lane.
     void refine_candidate(Series<L> &series, vec reach, mask where) {
-        vec first = L::splat(UNKNOWN), number = L::splat(-1.0);
+        vec first = L::splat(UNKNOWN);
+        block = mask{} - 1;
         for (int c = 0; c < columns; c++) {
             const mask earlier = root_at[c] < first;
             first = select(earlier, root_at[c], first);
-            number = select(earlier, L::splat(double(c)), number);
+            block = select(earlier, mask{} + c, block);
         }
-        for (int lane = 0; lane < LANES; lane++) block[lane] = int(number[lane]);
         aimed = false;
         aim(series);
         const mask wanted = where & (first < UNKNOWN);
         first = refine(candidate, 1, first, reach, wanted);
         found = wanted & (first <= reach);
         time = select(found, first, reach);
-        for (int lane = 0; lane < LANES; lane++)
-            if (!found[lane]) block[lane] = -1;
+        block = select(found, block, mask{} - 1);
     }
 
     // The roots near guesses, by Halley's method; UNKNOWN where it does not converge within the reach.
@@ -415,18 +417,29 @@ class EventSearch {
 
     // Take the event of the block that is first, however small the difference; return where the proof then fails.
     mask earlier(Series<L> &series, vec reach, mask where) {
-        mask changed{};
-        for (int c = 0; c < columns; c++) {
-            const mask wanted = where & (root_at[c] < UNKNOWN);
-            if (!any(wanted)) continue;
-            const vec root = refine(series.gap.at(c), width, root_at[c], reach, wanted);
-            mask first = wanted & (root <= time);
-            for (int lane = 0; lane < LANES; lane++) {
-                if (!first[lane] || (root[lane] == time[lane] && c >= block[lane])) continue;
-                time[lane] = root[lane];
-                block[lane] = c;
-                changed[lane] = -1;
+        const mask before = block;
+        mask changed{}, last = mask{} - 1;
+        for (;;) {
+            // The next block of each lane that may be first.
+            mask next = mask{} + columns;
+            for (int c = columns - 1; c >= 0; c--)
+                next = select(where & (root_at[c] < UNKNOWN) & (before != c) & (last < c), mask{} + c, next);
+            const mask wanted = next < columns;
+            if (!any(wanted)) break;
+            vec guess = time;
+            for (int c = 0; c < columns; c++) {
+                const mask own = next == c;
+                if (!any(own)) continue;
+                guess = select(own, root_at[c], guess);
+                for (int k = 0; k <= ORDER; k++)
+                    quotient[k] = select(own, series.gap[size_t(k) * width + c], quotient[k]);
             }
+            const vec root = refine(quotient, 1, guess, reach, wanted);
+            const mask first = wanted & ((root < time) | ((root == time) & (next < block)));
+            time = select(first, root, time);
+            block = select(first, next, block);
+            changed |= first;
+            last = next;
         }
         if (!any(changed)) return changed;
         aimed = false;
@@ -458,11 +471,12 @@ class EventSearch {
                     }
                 }
             }
-            block[lane] = own;
             if (L::ONE_CLOCK) {
+                block = mask{} + own;
                 time = L::splat(first);
                 found = L::all_lanes(own >= 0);
             } else {
+                block[lane] = own;
                 time[lane] = first;
                 found[lane] = -int64_t(own >= 0);
             }

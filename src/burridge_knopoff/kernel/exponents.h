@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "gram_schmidt.h"
 #include "record.h"
 #include "tangent.h"
 
@@ -66,7 +67,7 @@ class Exponents {
         : tangent((blocks + LANES - 1) / LANES, vectors), in_group(1, vectors), blocks(blocks),
           growth((edges.size() - 1) * vectors), duration(edges.size() - 1), at_rest(at_rest),
           start_time(vectors > 0 ? start_time : NEVER), edge(std::move(edges)), batches(int(edge.size()) - 1),
-          whole(vectors), product(vectors, 1.0), deceleration(blocks), lost_speed(size_t(vectors) * blocks),
+          length(vectors), product(vectors, 1.0), deceleration(blocks), lost_speed(size_t(vectors) * blocks),
           latest(blocks) {}
 
     double *x(int v) { return &tangent.position.lane(size_t(v) * tangent.columns * LANES); }
@@ -112,7 +113,7 @@ class Exponents {
         const int c = lane / LANES, own = lane % LANES;
         const Blocks::vec force = state.force(c);
         if (!starts) {
-            deceleration[i] = state.slip_acceleration(c, force)[own];
+            deceleration[i] = state.slip_acceleration(c, force, Blocks::from_bits(1 << own))[own];
             stopped.push_back(i);
             for (int v = 0; v < tangent.vectors; v++) {
                 lost_speed[size_t(v) * blocks + i] = u(v)[i];
@@ -201,40 +202,25 @@ class Exponents {
         }
     }
 
-    // Make the vectors orthonormal (modified Gram-Schmidt). kept : whether the vectors were orthonormal before; their
-    // lengths then count for the batch, and vectors from the first lost one on are dropped. Otherwise they are seeds
+    // Make the vectors orthonormal. kept : whether they were orthonormal before; their lengths then count for the
+    // batch, and vectors from the first lost one on are dropped. Otherwise they are seeds
     void orthonormalise(bool kept) {
-        for (int c = 0; c < alive; c++) whole[c] = dot(c, c);
-        for (int c = 0; c < tangent.vectors; c++) {
-            watch.worked((long long)blocks * std::max(alive - c, 1) / 8);
-            double factor = 0.0;
-            if (c < alive) {
-                const double square = c == 0 ? whole[0] : dot(c, c);
-                if (kept && square <= LOST * LOST * whole[c]) {
-                    alive = c;
-                } else {
-                    const double length = std::sqrt(square);
-                    factor = 1.0 / length;
-                    if (kept && counted()) {
-                        product[c] *= length;
-                        if (!(1e-100 < product[c] && product[c] < 1e100)) collect(c);
-                    }
-                }
-            }
-            double *x = this->x(c), *u = this->u(c);
-            for (int i = 0; i < blocks; i++) {
-                x[i] *= factor;
-                u[i] *= factor;
-            }
-            for (int d = c + 1; d < alive; d++) {
-                const double along = dot(c, d);
-                double *y = this->x(d), *w = this->u(d);
-                for (int i = 0; i < blocks; i++) {
-                    y[i] -= along * x[i];
-                    w[i] -= along * u[i];
-                }
-            }
-        }
+        double count = alive;
+        gram_schmidt(x(0), u(0), size_t(tangent.columns) * LANES, tangent.vectors, blocks, unit * unit, true, kept,
+                     count, length.data(), watch);
+        alive = int(count);
+        if (kept) grow(length.data(), 1);
+    }
+
+    // Whether `follow` does nothing but orthonormalise within a batch.
+    bool only_renews(const double *slip, double clock) const {
+        return clock >= due && clock < next_edge() && stuck(slip) <= most_stuck;
+    }
+    // Record that this has been done outside, with lengths at every stride-th number, for `count` remaining vectors.
+    void renewed(double clock, int count, const double *lengths, int stride) {
+        alive = count;
+        grow(lengths, stride);
+        due = clock + interval;
     }
 
     // Map the perturbations to the start of block i under quasi-static loading: the driver advances until s_i reaches
@@ -264,15 +250,12 @@ class Exponents {
     int lost() const { return std::max(most_stuck, alive < tangent.vectors ? 2 * blocks - alive : 0); }
 
   private:
-    // A vector that has been shortened to less than this has been removed by stops: the remainder is rounding.
-    static constexpr double LOST = 1e-13;
-
     const std::vector<double> edge;
     const int batches;
     int batch = -1;
     double due = 0.0, batch_start = 0.0;
     // Products of lengths, whose logarithm is taken at the end of a batch, or before it could overflow.
-    std::vector<double> whole, product;
+    std::vector<double> length, product;
     // The latest stop or start of a block.
     struct Change {
         Clock at{-NEVER, 0.0};
@@ -300,14 +283,12 @@ class Exponents {
         orthonormalise(false);
     }
 
-    double dot(int c, int d) {
-        const double *x = this->x(c), *u = this->u(c), *y = this->x(d), *w = this->u(d);
-        double moved = 0.0, sped = 0.0;
-        for (int i = 0; i < blocks; i++) {
-            moved += x[i] * y[i];
-            sped += u[i] * w[i];
+    // Count the lengths of the vectors for the present batch.
+    void grow(const double *lengths, int stride) {
+        for (int c = 0; c < alive && counted(); c++) {
+            product[c] *= lengths[size_t(c) * stride];
+            if (!(1e-100 < product[c] && product[c] < 1e100)) collect(c);
         }
-        return moved + unit * unit * sped;
     }
 
     // Add the growth of vector c since the last call to its batch.

@@ -34,6 +34,8 @@ struct Model {
     bool drops() const { return law.at_rest < 1.0; }
     double coincidence() const { return COINCIDENCE * springs.unit; }
     double young() const { return YOUNG * springs.unit; }
+    // Bound on the rate at which perturbations change.
+    double pace() const { return springs.fastest + springs.firmest * law.steepest + springs.damping_rate; }
 
     // Whether trajectories of both may lie in the lanes of the same vectors.
     bool is_like(const Model &other) const {
@@ -59,7 +61,7 @@ struct Layout : Lanes<COUNT> {
     Rows drift;
     std::vector<mask> present;
     bool linear, drops, symmetric, damped;
-    Number v, at_rest, rate, coincidence, young, creep_speed;
+    Number v, at_rest, rate, coincidence, young, pace, creep_speed;
 
     // The value for one lane, or for all lanes.
     static double of_lane(const Number &number, int lane) {
@@ -98,6 +100,7 @@ struct Layout : Lanes<COUNT> {
         set_lane(rate, lane, model.law.rate);
         set_lane(coincidence, lane, model.coincidence());
         set_lane(young, lane, model.young());
+        set_lane(pace, lane, model.pace());
         set_lane(creep_speed, lane, model.creep_speed);
     }
 };

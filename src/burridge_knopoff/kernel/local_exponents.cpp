@@ -62,8 +62,7 @@ void Run::propagate(Group &group, double to) {
     if (!law.law.linear && (expanded != &group || group.followed > 0.0)) restore_friction(group, group.followed);
     const double length = to - group.followed;
     group.followed = to;
-    tangent.load(group.state, group.series, length, Blocks::all_lanes(true),
-                 [&](int) -> const Model & { return model; });
+    tangent.load(group.state, group.series, length, Blocks::all_lanes(true));
     const int parts = tangent.parts_of(0);
     exchange(group, false);
     for (int done = 1;; done++) {

@@ -55,6 +55,7 @@ void Lockstep::enter(Run &run, int lane) {
     transient[lane] = run.observer.transient();
     ends_apart[lane] = run.observer.apart;
     running[lane] = -int64_t(run.exponents.running);
+    speed_weight[lane] = run.exponents.unit * run.exponents.unit;
     halts[lane] = -int64_t(run.halting_block >= 0);
     accumulating[lane] = -int64_t(run.log.accumulating);
     steps[lane] = double(run.steps);
@@ -145,9 +146,7 @@ void Lockstep::round() {
         since_event = select(event, vec{}, since_event);
     }
     // At events, so that all solvers orthonormalise at the same times.
-    const int due = bits(active & running & (event | (since_event >= longest_follow)));
-    for (int lane = 0; due >> lane; lane++)
-        if (due >> lane & 1) orthonormalise(clock[lane], lane);
+    orthonormalise(clock, active & running & (event | (since_event >= longest_follow)));
     for (int lane = 0; any(halting) && lane < LANES; lane++) {
         if (!halting[lane] || state.slip[own[lane]->halting_block][lane] != 0.0) continue;
         leave(lane);
@@ -198,8 +197,9 @@ void Lockstep::observe(vec length) {
         if (any(side != vec{}))
             crossing = select(side != vec{}, search.crossing_within(series, length, blocks), unknown);
         const int crossed = bits(in_window & (crossing != Search::NONE));
+        const vec rate = crossed ? section_rate(crossing) : vec{};
         for (int lane = 0; crossed >> lane; lane++)
-            if (crossed >> lane & 1) cross(crossing[lane], length[lane], lane);
+            if (crossed >> lane & 1) cross(crossing[lane], rate[lane], length[lane], lane);
     }
     extremes(length);
     const int sampled = bits(active & observed & (until(trajectory_time) <= length));
@@ -282,8 +282,16 @@ void Lockstep::load_distance(int lane) {
     distance.begin(ORDER);
 }
 
-// Record where W changes its sign.
-void Lockstep::cross(double crossing, double length, int lane) {
+// W' = Σ (U_i' − v) at times of the pieces.
+Lockstep::vec Lockstep::section_rate(vec t) const {
+    vec total{};
+    for (int i = 0; i < blocks; i++)
+        total = select(in_section[i], total + (series.value(series.velocity, i, t) - layout.v), total);
+    return total;
+}
+
+// Record where W changes its sign. rate : W' at a crossing that the search has found
+void Lockstep::cross(double crossing, double rate, double length, int lane) {
     Run &run = *own[lane];
     Observer &observer = run.observer;
     if (crossing == EventSearch<Trajectories>::UNCERTAIN) {
@@ -294,12 +302,8 @@ void Lockstep::cross(double crossing, double length, int lane) {
             polynomial.coefficient[k] = total;
         }
     }
-    observer.cross(polynomial, crossing, clock_of(lane), 0.0, length, length, [&](double t) {
-        double total = 0.0;
-        for (int i = run.first; i < run.last; i++)
-            total += series.value(series.velocity, i, Trajectories::splat(t))[lane] - run.model.v;
-        return total;
-    });
+    observer.cross(polynomial, crossing, clock_of(lane), 0.0, length, length,
+                   [&](double t) { return t == crossing ? rate : section_rate(Trajectories::splat(t))[lane]; });
     side[lane] = observer.side;
     changed[lane] = -1;
 }
@@ -354,26 +358,47 @@ void Lockstep::follow(vec length) {
     const mask where = active & running & moving;
     tangent.forget_stops(active & running);
     if (!any(where)) return;
-    tangent.load(state, series, length, where, [this](int lane) -> const Model & { return own[lane]->model; });
+    tangent.load(state, series, length, where);
     for (int done = 1;; done++) {
         tangent.follow(layout);
         if (tangent.most_parts() <= done) return;
         tangent.move_on(done);
+        vec time = clock;
+        mask within{};
         for (int lane = 0; lane < LANES; lane++) {
             const int parts = tangent.parts_of(lane);
-            if (parts > done) orthonormalise(clock[lane] + done * (length[lane] / parts), lane);
+            within[lane] = -int64_t(parts > done);
+            time[lane] += done * (length[lane] / parts);
         }
+        orthonormalise(time, within);
     }
 }
 
-// Orthonormalise the perturbations of a lane if this is due.
-void Lockstep::orthonormalise(double clock, int lane) {
-    Exponents &exponents = own[lane]->exponents;
-    const double *directions = slip_of(lane);
-    if (!exponents.is_due(directions, clock)) return;
-    exchange(lane, true);
-    exponents.follow(directions, clock, false);
-    exchange(lane, false);
+// Orthonormalise the perturbations of the lanes in which this is due.
+void Lockstep::orthonormalise(vec clock, mask where) {
+    vec alive{};
+    mask together{};
+    const int which = bits(where);
+    for (int lane = 0; which >> lane; lane++) {
+        if (!(which >> lane & 1)) continue;
+        Exponents &exponents = own[lane]->exponents;
+        const double *directions = slip_of(lane);
+        if (!exponents.is_due(directions, clock[lane])) continue;
+        if (exponents.only_renews(directions, clock[lane])) {
+            together[lane] = -1;
+            alive[lane] = exponents.alive;
+            continue;
+        }
+        exchange(lane, true);
+        exponents.follow(directions, clock[lane], false);
+        exchange(lane, false);
+    }
+    const int found = bits(together);
+    if (!found) return;
+    gram_schmidt(tangent.position.at(), tangent.velocity.at(), blocks, vectors, blocks, speed_weight, together, true,
+                 alive, growth.at(), watch);
+    for (int lane = 0; found >> lane; lane++)
+        if (found >> lane & 1) own[lane]->exponents.renewed(clock[lane], int(alive[lane]), &growth.lane(lane), LANES);
 }
 
 // Copy the perturbations of a lane to its run, or from there.

@@ -23,7 +23,7 @@ class Lockstep : private Example, public TrajectoryLanes {
     // like : one of the runs
     explicit Lockstep(const Run &like)
         : Example{like.model}, TrajectoryLanes(Example::model), vectors(like.exponents.tangent.vectors),
-          tangent(blocks, vectors), in_section(blocks), apart(ORDER + 2), apart_rate(ORDER + 2) {}
+          tangent(blocks, vectors), in_section(blocks), apart(ORDER + 2), apart_rate(ORDER + 2), growth(vectors) {}
 
     // Whether a run can use a lane: it must move as a whole under steady loading, without a catalogue.
     static bool takes(const Run &run) {
@@ -54,10 +54,11 @@ class Lockstep : private Example, public TrajectoryLanes {
     vec end{}, transient{}, batch_begin{}, batch_end{}, distance_time{}, trajectory_time{}, since_event{}, side{},
         ends_apart{}, lower{}, higher{};
     vec highest_speed[2]{}, lowest_force[2]{};  // by Stage
-    vec longest_follow{}, steps{}, most_steps{};
+    vec longest_follow{}, steps{}, most_steps{}, speed_weight{};
     mask observed{}, averaged{}, compared{}, running{}, halts{}, accumulating{}, changed{};
     std::vector<mask> in_section;
     Trajectories::Rows apart, apart_rate;  // coefficients of d and d'
+    Trajectories::Rows growth;             // lengths of the perturbations
 
     void enter(Run &run, int lane);
     void leave(int lane);
@@ -69,11 +70,12 @@ class Lockstep : private Example, public TrajectoryLanes {
     void average(vec length, mask where);
     void compare(vec length, mask where);
     void load_distance(int lane);
-    void cross(double crossing, double length, int lane);
+    vec section_rate(vec t) const;
+    void cross(double crossing, double rate, double length, int lane);
     void extremes(vec length);
     void sample(double length, int lane);
     void follow(vec length);
-    void orthonormalise(double clock, int lane);
+    void orthonormalise(vec clock, mask where);
     void exchange(int lane, bool out);
     void change(int i, mask where);
     const double *slip_of(int lane);

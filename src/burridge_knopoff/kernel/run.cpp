@@ -444,8 +444,7 @@ void Run::follow(Group &group, double length) {
     exponents.forget_stops();
     // Nothing changes while all blocks stick, however slow the driver is.
     if (exponents.stuck(group.slip()) == blocks) return;
-    exponents.tangent.load(group.state, group.series, length, Blocks::all_lanes(true),
-                           [&](int) -> const Model & { return model; });
+    exponents.tangent.load(group.state, group.series, length, Blocks::all_lanes(true));
     const int parts = exponents.tangent.parts_of(0);
     // The loading clock, which defines the batches, stops while blocks slip under quasi-static loading.
     const double part = loading > 0.0 ? 0.0 : length / parts;

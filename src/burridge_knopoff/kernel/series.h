@@ -24,15 +24,25 @@ constexpr int TRUNCATION = 53;
 // Longest piece, while nothing slips; its high powers are still finite.
 constexpr double LONGEST = 1e9;
 
-// Roots of 2, truncated to 30 bits because C libraries differ in the last bit.
-struct RootsOfTwo {
-    double root[MOST_TERMS + 1][MOST_TERMS + 1] = {};
-    RootsOfTwo() {
-        for (int n = 1; n <= MOST_TERMS; n++)
-            for (int k = 0; k < n; k++) root[n][k] = std::floor(std::exp2(30.0 + double(k) / n)) / 1073741824.0;
+// About the times at which terms with the last two powers reach TRUNCATION, by the exponent of their coefficients.
+template <int ORDER>
+struct StepLengths {
+    double last[2048], previous[2048];
+    StepLengths() {
+        for (int e = 0; e < 2048; e++) {
+            last[e] = length(e, ORDER);
+            previous[e] = length(e, ORDER - 1);
+        }
+    }
+    static double length(int exponent, int power) {
+        const int digits = 1022 - TRUNCATION - exponent, whole = int(std::floor(double(digits) / power));
+        // Roots of 2 are truncated to 30 bits because C libraries differ in the last bit.
+        const double root = std::floor(std::exp2(30.0 + double(digits - whole * power) / power));
+        return std::min(std::ldexp(root, whole - 30), LONGEST);
     }
 };
-inline const RootsOfTwo ROOTS_OF_TWO;
+template <int ORDER>
+inline const StepLengths<ORDER> STEP_LENGTHS;
 
 inline constexpr auto INVERSE = [] {
     struct {
@@ -42,14 +52,6 @@ inline constexpr auto INVERSE = [] {
     for (int n = 1; n < MOST_TERMS + 2; n++) table.at[n] = 1.0 / n;
     return table;
 }();
-
-// About the time at which the term with this coefficient and power reaches TRUNCATION.
-inline double step_length(double coefficient, int power) {
-    if (coefficient < 1e-300) return LONGEST;
-    const int digits = -TRUNCATION - (exponent(coefficient) - 1022);
-    const int whole = digits >= 0 ? digits / power : -((power - 1 - digits) / power);
-    return scaled_by_two(ROOTS_OF_TWO.root[power][digits - whole * power], whole);
-}
 
 // One piece of the motion: positions x_i, velocities U_i' and the event functions g_i as polynomials of the time since
 // its start.
@@ -205,7 +207,7 @@ struct Series {
             }
             vec acceleration = slipping[c] * (s * layout.inverse_mass[c]) - signed_threshold[c] * friction;
             const mask young = (slip != vec{}) & ((state.touching[c] > 0.0) | (state.age[c] < layout.young));
-            if (any(young)) acceleration = select(young, state.slip_acceleration(c, s), acceleration);
+            if (any(young)) acceleration = select(young, state.slip_acceleration(c, s, young), acceleration);
             u(1)[c] = acceleration;
             g(0)[c] = slip * u(0)[c] + (slipping[c] * layout.creep_speed + stuck[c] * (layout.threshold[c] - s));
         }
@@ -276,8 +278,9 @@ struct Series {
             velocity += step;
             g += gap_step;
         };
-        if constexpr (COLUMNS == 1 && KIND != ANY_LAW) {
-            // The rows are unrolled, so that no branches have to be predicted.
+        // Unrolled rows need no predicted branches. With several columns there are so many instructions that they are
+        // only worth decoding if each acts on eight lanes.
+        if constexpr ((COLUMNS == 1 && KIND != ANY_LAW) || (COLUMNS > 1 && KIND == HYPERBOLIC_LAW && L::LANES == 8)) {
             [&]<int... K>(std::integer_sequence<int, K...>) {
                 (row(std::integral_constant<int, K + 1>{}), ...);
             }(std::make_integer_sequence<int, ORDER - 1>{});
@@ -297,19 +300,19 @@ struct Series {
             previous = largest(previous, other);
             total += one + other;
         }
+        const mask finite = total < 1e300;
         if (L::ONE_CLOCK) {
-            for (int lane = 0; lane < L::LANES; lane++)
-                if (!(total[lane] < 1e300)) return vec{};
-            return L::splat(length(largest_lane(last), largest_lane(previous)));
+            if (bits(finite) != bits(L::all_lanes(true))) return vec{};
+            return L::splat(length(exponent(largest_lane(last)), exponent(largest_lane(previous))));
         }
+        const mask of_last = (mask)last >> 52, of_previous = (mask)previous >> 52;
         vec reach;
-        for (int lane = 0; lane < L::LANES; lane++)
-            reach[lane] = total[lane] < 1e300 ? length(last[lane], previous[lane]) : 0.0;
-        return reach;
+        for (int lane = 0; lane < L::LANES; lane++) reach[lane] = length(of_last[lane], of_previous[lane]);
+        return select(finite, reach, vec{});
     }
 
-    static double length(double last, double previous) {
-        return std::min({step_length(last, ORDER), step_length(previous, ORDER - 1), LONGEST});
+    static double length(int64_t last, int64_t previous) {
+        return std::min(STEP_LENGTHS<ORDER>.last[last], STEP_LENGTHS<ORDER>.previous[previous]);
     }
 };
 

@@ -76,14 +76,17 @@ struct State {
     void measure() {
         const vec zero{};
         for (int c = 0; c < layout.columns; c++) relative[c] = velocity[c] - layout.v;
-        for (int c = 0; layout.damped && c < layout.columns; c++)
-            slope[c] = select(slip[c] != zero, slip_acceleration(c, force(c)), zero);
+        for (int c = 0; layout.damped && c < layout.columns; c++) {
+            const mask slips = slip[c] != zero;
+            slope[c] = select(slips, slip_acceleration(c, force(c), slips), zero);
+        }
     }
 
-    // Friction at a speed |U_i'|, lane by lane where the time does not matter.
-    BK_INLINE vec friction(vec speed) const {
+    // Friction at speeds |U_i'|, in some lanes: lane by lane, since few are needed.
+    BK_INLINE vec friction(vec speed, mask where) const {
         if (layout.linear) return layout.at_rest - layout.rate * speed;
-        return each(speed, [this](double u, int lane) { return layout.law(lane).at(u); });
+        const int which = bits(where);
+        return each(speed, [&](double u, int lane) { return which >> lane & 1 ? layout.law(lane).at(u) : 0.0; });
     }
 
     // U_i'' of a block that starts at its threshold: exactly 0 unless friction drops at the start.
@@ -91,12 +94,13 @@ struct State {
         return (layout.threshold[c] * (1.0 - layout.at_rest)) * layout.inverse_mass[c];
     }
 
-    // U_i'' of slipping blocks.
-    BK_INLINE vec slip_acceleration(int c, vec force) const {
+    // U_i'' of slipping blocks, in some lanes.
+    BK_INLINE vec slip_acceleration(int c, vec force, mask where) const {
         const vec own = slip[c] * velocity[c];
-        vec made = (force - slip[c] * (layout.threshold[c] * friction(own))) * layout.inverse_mass[c];
-        made = select(age[c] < layout.young, acceleration[c], made);
-        return select((touching[c] > 0.0), slip[c] * start_acceleration(c), made);
+        const mask young = age[c] < layout.young, touches = touching[c] > 0.0;
+        const vec resistance = slip[c] * (layout.threshold[c] * friction(own, where & ~young & ~touches));
+        const vec made = select(young, acceleration[c], (force - resistance) * layout.inverse_mass[c]);
+        return select(touches, slip[c] * start_acceleration(c), made);
     }
 
     // Where blocks change at this instant: they are beyond their threshold, or within COINCIDENCE of it. Call `measure`
@@ -109,7 +113,7 @@ struct State {
         vec gap = slip[c] * velocity[c] + layout.creep_speed;
         mask stopping = gap < zero;
         const mask close = (gap <= coincidence) & ~stuck & ~stopping & ~touches & layout.present[c];
-        if (any(close)) stopping |= close & (gap < -coincidence * (slip[c] * slip_acceleration(c, s)));
+        if (any(close)) stopping |= close & (gap < -coincidence * (slip[c] * slip_acceleration(c, s, close)));
         // At a start with Φ(0) < 1 the block has an acceleration, whatever the rate of the force.
         stopping &= ~touches;
         if (!layout.drops) stopping |= touches & (slip[c] * rate < zero);
@@ -133,7 +137,7 @@ struct State {
     // Where a block sticks, or its slip has become slower than a limit; fastest : the highest angular frequency of the
     // chain, above the rate at which the speed of an overdamped slip decays
     mask rests(int c, double limit, double fastest) const {
-        return rests(c, velocity[c], slip_acceleration(c, force(c)), limit, fastest);
+        return rests(c, velocity[c], slip_acceleration(c, force(c), slip[c] != vec{}), limit, fastest);
     }
     // The same for a slip of another speed and acceleration.
     mask rests(int c, vec speed, vec change, double limit, double fastest) const {

@@ -41,7 +41,7 @@ class Tangent {
         columns = count;
         for (Rows *row : {&position, &velocity}) row->reserve(size_t(vectors + 1) * count);
         for (Rows *row : {&moving, &pull_scale}) row->reserve(count);
-        for (Rows *row : {&rows, &speed_rows}) row->reserve(size_t(count) * TOGETHER);
+        for (Rows *row : {&rows, &sums, &speed_rows}) row->reserve(size_t(count) * TOGETHER);
         // With one clock `Exponents` maps the perturbations through stops and starts.
         if (!L::ONE_CLOCK) {
             deceleration.reserve(count);
@@ -63,7 +63,7 @@ class Tangent {
         const vec zero{}, force = state.force(c);
         const mask stops = where & (state.slip[c] != zero), starts = where & ~stops;
         if (any(stops)) {
-            deceleration[c] = select(stops, state.slip_acceleration(c, force), deceleration[c]);
+            deceleration[c] = select(stops, state.slip_acceleration(c, force, stops), deceleration[c]);
             for (int v = 0; v < vectors; v++) {
                 vec &u = velocity[size_t(v) * columns + c], &kept = lost[size_t(v) * columns + c];
                 kept = select(stops, u, kept);
@@ -100,23 +100,23 @@ class Tangent {
     // Expand −θ dΦ/dU' / m along a piece of the motion, and determine the number of parts into which it is divided.
     // Coefficient k is multiplied by t^(k + 1), with t the length of a part, and is 0 where a block sticks.
     //
-    // where : clocks whose perturbations are propagated; model(clock) : its model
-    template <class Models>
-    void load(const State<L> &state, Series<L> &series, const Number &length, mask where, Models &&model) {
+    // where : clocks whose perturbations are propagated
+    void load(const State<L> &state, Series<L> &series, const Number &length, mask where) {
         const L &layout = state.layout;
+        const Number turn = layout.pace * length;
+        Number count{}, terms{};
         for (int k = 0; k < CLOCKS; k++) {
-            parts[k] = degree[k] = rate_terms[k] = 0;
+            parts[k] = where[k] ? 1 + int(L::of_lane(turn, k) / STRIDE) : 1;
+            L::set_lane(count, k, parts[k]);
+        }
+        part = length / count;
+        const Number x = (layout.linear ? layout.pace : SLOWER * layout.pace) * part;
+        for (int n = 2; n < LENGTH - 1; n += 2) terms += x > ENOUGH.at[n] ? Number{} + 2.0 : Number{};
+        for (int k = 0; k < CLOCKS; k++) {
+            degree[k] = rate_terms[k] = 0;
             if (!where[k]) continue;
-            const Model &own = model(k);
-            const double pace = own.springs.fastest + own.springs.firmest * own.law.steepest + own.springs.damping_rate;
-            const double whole = L::of_lane(length, k);
-            parts[k] = 1 + int(pace * whole / STRIDE);
-            const double one = parts[k] > 1 ? whole / parts[k] : whole;
-            L::set_lane(part, k, one);
-            const double x = layout.linear ? pace * one : SLOWER * pace * one;
             rate_terms[k] = 1;
-            degree[k] = LENGTH - 1;
-            while (degree[k] > 3 && x <= enough(degree[k] - 2)) degree[k] -= 2;
+            degree[k] = 2 + int(L::of_lane(terms, k));
             if (layout.linear) continue;
             // Fewer rates than terms are needed: a neglected rate causes one error, whereas a term sums over all rates.
             rate_terms[k] = degree[k] - degree[k] / 5;
@@ -132,8 +132,11 @@ class Tangent {
         }
         for (int first = 0; !layout.linear;) {
             const int terms = *std::max_element(rate_terms, rate_terms + CLOCKS);
+            int fewest = terms;
+            for (int k = 0; k < CLOCKS; k++)
+                if (degree[k] > 0) fewest = std::min(fewest, rate_terms[k]);
             last_rate = lanes_of(rate_terms);
-            for (int c = 0; c < columns; c++) expand_rates(state, series, c, first, terms);
+            for (int c = 0; c < columns; c++) expand_rates(state, series, c, first, fewest, terms);
             bool enough = true;
             for (int k = 0; k < CLOCKS; k++) {
                 if (degree[k] == 0 || rate_terms[k] == L::ORDER || is_enough(k)) continue;
@@ -193,7 +196,20 @@ class Tangent {
     // this, x is increased by this factor.
     static constexpr double SLOWER = 1.25;
 
-    Rows lost, deceleration, moving, pull_scale, rates, speeds, rows, speed_rows;
+    // The x with x^(n+1)/(n+1)! = NEGLIGIBLE, rounded to digits on which all C libraries agree.
+    struct Enough {
+        double at[LENGTH];
+        Enough() {
+            double factorial = 1.0;
+            for (int n = 0; n < LENGTH; n++) {
+                factorial *= n + 1;
+                at[n] = std::round(1e9 * std::pow(NEGLIGIBLE * factorial, 1.0 / (n + 1))) / 1e9;
+            }
+        }
+    };
+    static inline const Enough ENOUGH;
+
+    Rows lost, deceleration, moving, pull_scale, rates, speeds, rows, sums, speed_rows;
     Number part{};
     vec last_rate{};
     int parts[CLOCKS] = {}, rate_terms[CLOCKS] = {}, degree[CLOCKS] = {};
@@ -205,33 +221,21 @@ class Tangent {
         return made;
     }
 
-    // The x with x^(n+1)/(n+1)! = NEGLIGIBLE, rounded to digits on which all C libraries agree.
-    static double enough(int n) {
-        static const auto table = [] {
-            std::vector<double> made(LENGTH);
-            double factorial = 1.0;
-            for (int k = 0; k < LENGTH; k++) {
-                factorial *= k + 1;
-                made[k] = std::round(1e9 * std::pow(NEGLIGIBLE * factorial, 1.0 / (k + 1))) / 1e9;
-            }
-            return made;
-        }();
-        return table[n];
-    }
-
-    void expand_rates(const State<L> &state, Series<L> &series, int c, int first, int terms) {
+    // Expand the rates of a column: `terms` of them, of which `fewest` are retained for all clocks.
+    void expand_rates(const State<L> &state, Series<L> &series, int c, int first, int fewest, int terms) {
         const L &layout = state.layout;
         const vec *slope = series.law.row(series.law.law.slope, c);
         vec *rate = rates.at(size_t(c) * LENGTH), factor = -(layout.threshold[c] * pull_scale[c]);
         series.law.complete_slope(c, first, terms);
-        for (int n = 0; n < terms; n++) {
+        for (int n = 0; n < fewest; n++) {
             rate[n] = factor * slope[n];
             factor *= part;
         }
-        if (L::ONE_CLOCK)
-            for (int n = terms; n < LENGTH - 1; n++) rate[n] = vec{};
-        else
-            for (int n = 0; n < LENGTH - 1; n++) rate[n] = select(last_rate > double(n), rate[n], vec{});
+        for (int n = fewest; n < terms; n++) {
+            rate[n] = select(last_rate > double(n), factor * slope[n], vec{});
+            factor *= part;
+        }
+        rate[terms] = vec{};
     }
 
     // Whether the neglected rates are small enough, judged by the last two retained rates.
@@ -261,6 +265,38 @@ class Tangent {
         propagate_columns<COUNT, 0>(layout, v);
     }
 
+    // The sums of rate_k u_(n−k) over k = 1 … n, and those of the next order without their last term: both read the
+    // same speeds. Rates from `most_rates` on are 0. step : between the speeds of one order and the next
+    template <int COUNT>
+    static BK_INLINE void sum(const vec *rate, const vec *speed, size_t step, int n, int most_rates, vec *change,
+                              vec *later) {
+        vec near[COUNT], far[COUNT];
+        for (int i = 0; i < COUNT; i++) near[i] = far[i] = vec{};
+        int k = std::min(n, most_rates - 1);
+        const vec *u = speed + (n - k) * step;
+        for (vec further = rate[k + 1]; k > 0; k--, u += step) {
+            const vec own = rate[k];
+            for (int i = 0; i < COUNT; i++) {
+                near[i] += own * u[i];
+                far[i] += further * u[i];
+            }
+            further = own;
+        }
+        for (int i = 0; i < COUNT; i++) {
+            change[i] = near[i];
+            later[i] = far[i];
+        }
+    }
+
+    // Add the last term to the sums of an odd order.
+    template <int COUNT>
+    static BK_INLINE void complete(const vec *rate, const vec *speed, int most_rates, const vec *later, vec *change) {
+        for (int i = 0; i < COUNT; i++) {
+            change[i] = later[i];
+            if (most_rates > 1) change[i] += rate[1] * speed[i];
+        }
+    }
+
     // In one column everything except the earlier speeds stays in registers.
     template <int COUNT, bool OPEN>
     void propagate_column(const L &layout, int v) {
@@ -273,12 +309,13 @@ class Tangent {
             velocity[i] = this->velocity[v + i];
             u[i] = speed[i] = velocity[i] * moving[0];
         }
-        const int before_rates = rate_terms[0] > 1 ? 0 : degree;
+        vec change[COUNT], later[COUNT];
         for (int n = 0; n < degree; n++) {
             const double factor = INVERSE[n + 1];
-            vec change[COUNT]{};
-            for (int j = before_rates; j < n; j++)
-                for (int i = 0; i < COUNT; i++) change[i] += rate[n - j] * speed[j * COUNT + i];
+            if (n % 2 == 0)
+                sum<COUNT>(rate, speed, COUNT, n, rate_terms[0], change, later);
+            else
+                complete<COUNT>(rate, speed + (n - 1) * COUNT, rate_terms[0], later, change);
             for (int i = 0; i < COUNT; i++) {
                 vec pull;
                 if constexpr (OPEN)
@@ -306,13 +343,12 @@ class Tangent {
     // COLUMNS : the number of columns of a short row of blocks, 0 for any; see Series::fill
     template <int COUNT, int COLUMNS, bool DAMPED = false>
     void propagate_columns(const L &layout, int v) {
-        // Columns of a short row are summed side by side, since each sum waits for its last term.
-        constexpr int BESIDE = COLUMNS ? COLUMNS : 1;
         // x_n of vector i is row[i · columns + c], u_n is speed[(n · columns + c) · COUNT + i].
         const int count = COLUMNS ? COLUMNS : columns, last = *std::max_element(degree, degree + CLOCKS);
         const int most_rates = *std::max_element(rate_terms, rate_terms + CLOCKS);
         const vec own_terms = lanes_of(degree);
-        vec known[COLUMNS ? COLUMNS * COUNT : 1], *row = COLUMNS ? known : rows.at(), *speed = speeds.at();
+        vec known[COLUMNS ? 2 * COLUMNS * COUNT : 1], *row = COLUMNS ? known : rows.at(), *speed = speeds.at();
+        vec *sums = COLUMNS ? known + COLUMNS * COUNT : this->sums.at();
         vec *position = this->position.at(size_t(v) * count), *velocity = this->velocity.at(size_t(v) * count);
         for (int i = 0; i < COUNT; i++)
             for (int c = 0; c < count; c++) {
@@ -326,34 +362,28 @@ class Tangent {
             vec *next = speed + size_t(n + 1) * count * COUNT;
             for (int c = 0; DAMPED && c < count; c++)
                 for (int i = 0; i < COUNT; i++) speed_rows[i * count + c] = now[c * COUNT + i];
-            for (int first = 0; first < count; first += BESIDE) {
-                vec changes[BESIDE * COUNT]{};
-                // Rates from `most_rates` on are 0.
-                for (int j = std::max(0, n + 1 - most_rates); j < n; j++)
-                    for (int c = 0; c < BESIDE; c++) {
-                        const vec rate = rates[size_t(first + c) * LENGTH + n - j];
-                        const vec *before = speed + (size_t(j) * count + first + c) * COUNT;
-                        for (int i = 0; i < COUNT; i++) changes[c * COUNT + i] += rate * before[i];
+            for (int c = 0; c < count; c++) {
+                const vec *rate = rates.at(size_t(c) * LENGTH), scale = pull_scale[c], diagonal = layout.diagonal[c];
+                vec change[COUNT], *later = sums + c * COUNT;
+                if (n % 2 == 0)
+                    sum<COUNT>(rate, speed + c * COUNT, size_t(count) * COUNT, n, most_rates, change, later);
+                else
+                    complete<COUNT>(rate, now + (c - count) * COUNT, most_rates, later, change);
+                for (int i = 0; i < COUNT; i++) {
+                    const vec *x = row + i * count;
+                    vec pull;
+                    if constexpr (COLUMNS)
+                        pull = layout.template pull_in_row<COLUMNS>(x, c);
+                    else
+                        pull = layout.pull(x, c);
+                    vec force = pull - diagonal * x[c];
+                    if constexpr (DAMPED) {
+                        const vec *u = speed_rows.at(size_t(i) * count);
+                        force += layout.drag(u, c) - layout.damping_diagonal[c] * u[c];
                     }
-                for (int c = first; c < first + BESIDE; c++) {
-                    vec *change = changes + (c - first) * COUNT;
-                    const vec scale = pull_scale[c], diagonal = layout.diagonal[c], rate = rates[size_t(c) * LENGTH];
-                    for (int i = 0; i < COUNT; i++) {
-                        const vec *x = row + i * count;
-                        vec pull;
-                        if constexpr (COLUMNS)
-                            pull = layout.template pull_in_row<COLUMNS>(x, c);
-                        else
-                            pull = layout.pull(x, c);
-                        vec force = pull - diagonal * x[c];
-                        if constexpr (DAMPED) {
-                            const vec *u = speed_rows.at(size_t(i) * count);
-                            force += layout.drag(u, c) - layout.damping_diagonal[c] * u[c];
-                        }
-                        change[i] += scale * force;
-                        next[c * COUNT + i] = (change[i] + rate * now[c * COUNT + i]) * factor;
-                        add(velocity[i * count + c], next[c * COUNT + i], own);
-                    }
+                    change[i] += scale * force;
+                    next[c * COUNT + i] = (change[i] + rate[0] * now[c * COUNT + i]) * factor;
+                    add(velocity[i * count + c], next[c * COUNT + i], own);
                 }
             }
             for (int c = 0; c < count; c++)

@@ -27,11 +27,12 @@ class TrajectoryLanes {
     EventSearch<Trajectories> search;
     vec clock{}, clock_rest{};
     mask active{};
+    std::vector<int> due;  // lanes in which a block changes, see `settle`
 
     // model : a model of the same kind as those of all lanes
     explicit TrajectoryLanes(const Model &model)
         : blocks(model.springs.blocks), layout(model), law(model.law, blocks), state(layout), series(layout, law),
-          search(scratch) {}
+          search(scratch), due(blocks) {}
     TrajectoryLanes(const TrajectoryLanes &) = delete;
 
     // Expand the motion of all lanes, with additional columns of g; return the times for which the series are valid.
@@ -71,7 +72,6 @@ class TrajectoryLanes {
     // is_open() : lanes in which events do not accumulate
     template <class Change, class Open>
     void settle(mask where, Change &&change, Open &&is_open) {
-        std::vector<int> due(blocks);
         for (where &= is_open(); any(where); where &= is_open()) {
             mask changing{};
             state.measure();

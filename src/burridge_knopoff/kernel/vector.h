@@ -63,7 +63,7 @@ using Of = Lanes<sizeof(V) / 8>;
 template <class V>
 BK_INLINE V select(typename Of<V>::mask where, V a, V b) {
 #if defined(__AVX2__)
-    if constexpr (sizeof(V) == 32) return _mm256_blendv_pd(b, a, (V)where);
+    if constexpr (sizeof(V) == 32) return (V)_mm256_blendv_pd((__m256d)b, (__m256d)a, (__m256d)where);
 #endif
     return where ? a : b;
 }
@@ -121,6 +121,9 @@ template <class V>
 BK_INLINE V largest(V a, V b) {
     BK_INSTRUCTION(max_pd, a, b);
     return a > b ? a : b;
+}
+BK_INLINE double root(double a) {
+    return std::sqrt(a);
 }
 template <class V>
 BK_INLINE V root(V a) {
@@ -212,12 +215,4 @@ BK_INLINE int exponent(double x) {
     std::memcpy(&stored, &x, 8);
     return int(stored >> 52 & 2047);
 }
-// x 2^e, for numbers that are not subnormal.
-BK_INLINE double scaled_by_two(double x, int e) {
-    int64_t stored = int64_t(e + 1023) << 52;
-    double power;
-    std::memcpy(&power, &stored, 8);
-    return x * power;
-}
-
 }  // namespace bk
