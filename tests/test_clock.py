@@ -94,7 +94,7 @@ CALLS = {
     "transverse_exponent": (settled, lambda state: transverse_exponent(PAPER, state, 64.0, 256.0)),
     "visit": (settled, lambda state: visit(PAPER, state, 64.0, 512.0).returns),
     "watch_state": (settled, watched),
-    "flow": (settled, lambda state: flow(PAPER, state, 32.0)[1]),
+    "flow": (settled, lambda state: np.stack(flow(PAPER, state, 32.0).events())),
     "mean_distance": (settled, lambda state: mean_distance(PAPER, state, 32.0)),
 }
 

@@ -76,6 +76,9 @@ def elements(values: Any) -> list[Any] | None:
 
 def real_array(values: Any, key: str) -> np.ndarray:
     """Return real numbers of any shape, NaN where masked; raises ValueError, one line, for anything else."""
+    # Laws are evaluated at thousands of single speeds. Where nothing can be masked, this takes a tenth of the time.
+    if type(values) in (float, np.ndarray) and (plain := np.asarray(values)).dtype.kind in "iuf":
+        return plain.astype(float)
     try:
         array = values if isinstance(values, np.ndarray) else np.ma.asarray(values)
     except (TypeError, ValueError):

@@ -45,7 +45,7 @@ def is_periodic(attractor):
 
 def stops_of_first(orbit):
     """Return the states at the stops of the first block in a period, shape (stops, 6), sorted by the first position."""
-    values = flow(orbit.model, orbit.reference, orbit.period)[0].log.events.values()
+    values = flow(orbit.model, orbit.reference, orbit.period).log.events.values()
     states = values[(values[:, 0] == 1) & (values[:, 1] == 0), 2:]
     return states[np.argsort(states[:, 0])]
 

@@ -11,7 +11,7 @@ def slipping_state(orbit):
     """Return (U, U') of the orbit a quarter of its slip after the start of blocks 1 and 3: all blocks slip there."""
     time, kind = orbit.events_of(0)
     slip = orbit.period - orbit.stick_time(0)
-    state = flow(orbit.model, orbit.reference, float(time[kind == 1][0]) + 0.25 * slip)[0].state()
+    state = flow(orbit.model, orbit.reference, float(time[kind == 1][0]) + 0.25 * slip).state()
     assert not state.stuck.any()
     assert state.velocity.min() > 0.01
     return (state.position + orbit.model.sliding_offset).tolist(), state.velocity.tolist()

@@ -15,7 +15,7 @@ LENGTH = 1e-3
 @pytest.mark.parametrize("share", [0.0, 0.05, 0.35, 0.6, 0.95])
 def test_a_step_ends_at_an_orbit_far_from_events_whatever_its_reference(families, upward, share):
     usual = families["nonlinear"].at(0.05)
-    state = flow(usual.model, usual.reference, share * usual.period)[0].state()
+    state = flow(usual.model, usual.reference, share * usual.period).state()
     orbit = refine_orbit(orbit_of(usual.model, state, usual.period, usual.symmetry))
     line = line_along_a(orbit.model.chain)
     point = step_along(begin_branch(orbit, upward, line), LENGTH)

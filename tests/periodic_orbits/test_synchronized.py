@@ -38,7 +38,7 @@ def turns(run):
 @pytest.mark.parametrize("a", [1e-4, 0.0025, 0.02, 0.0355, 0.036, 0.05, 0.0869, 0.1, 0.2, 0.3])
 def test_the_state_returns_and_its_multiplier_in_closed_form(families, law, a):
     orbit = families[law].at(a)
-    end = flow(orbit.model, orbit.reference, orbit.period)[0].state()
+    end = flow(orbit.model, orbit.reference, orbit.period).state()
     assert np.abs(end.vector() - orbit.reference.vector()).max() <= 1e-14
     assert orbit.residual <= 1e-14
     assert orbit.symmetry == Symmetry.SYNCHRONIZED
@@ -73,7 +73,7 @@ def test_multipliers_against_finite_differences(families, law, a):
 
     def end(change):
         start = ChainState(*np.split(orbit.reference.vector() + change, 2), orbit.reference.stuck)
-        return flow(orbit.model, start, orbit.period)[0].state().vector()
+        return flow(orbit.model, start, orbit.period).state().vector()
 
     matrix = np.zeros((6, 6))
     free = [0, 1, 2, *(3 + np.flatnonzero(~orbit.reference.stuck)).tolist()]

@@ -131,7 +131,7 @@ def test_differences_of_blocks_1_and_3_decay_below_a_c_and_grow_above(families, 
     for offset in (-0.002, 0.002):
         orbit = families[law].at(critical[law] + offset)
         start, end = (
-            flow(orbit.model, displace_end_blocks(orbit.reference, 1e-8), turns * orbit.period)[0].state()
+            flow(orbit.model, displace_end_blocks(orbit.reference, 1e-8), turns * orbit.period).state()
             for turns in (1, 101)
         )
         first, last = (state.position[0] - state.position[2] for state in (start, end))

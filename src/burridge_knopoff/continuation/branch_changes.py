@@ -115,7 +115,7 @@ def _features(refined: xarray.Dataset, k: int, slot: int) -> tuple[int, ...]:
     return kind, symmetry, period
 
 
-def is_followed(refined: xarray.Dataset, k: int, slot: int) -> bool:
-    """Return whether a motion is a periodic orbit that is short enough to be followed along a."""
-    closed = refined["kind"].values[k, slot] in (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)
-    return bool(closed and refined["period"].values[k, slot] <= refined.attrs["refine_longest_period"])
+def is_followed(refined: xarray.Dataset, k: int | np.ndarray, slot: int | np.ndarray) -> np.ndarray:
+    """Return whether motions are periodic orbits that are short enough to be followed along a, elementwise."""
+    closed = np.isin(refined["kind"].values[k, slot], (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC))
+    return closed & (refined["period"].values[k, slot] <= refined.attrs["refine_longest_period"])

@@ -213,7 +213,7 @@ def approach(model: Model, state: ChainState, edges: Sequence[Edge], branch: int
 
 def _states_at_stops(orbit: PeriodicOrbit, block: int) -> Iterator[np.ndarray]:
     """Yield the states of an orbit, and those of its mirror image, at the stops of a block, if there are any."""
-    values = flow(orbit.model, orbit.reference, orbit.period)[0].log.events.values()
+    values = flow(orbit.model, orbit.reference, orbit.period).log.events.values()
     blocks = orbit.model.blocks
     stops = values[:, 1] == 0
     states = values[stops & (values[:, 0] == block), 2:]

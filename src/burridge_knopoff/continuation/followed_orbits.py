@@ -9,7 +9,6 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-import scipy
 import xarray
 
 from burridge_knopoff.continuation.branch_changes import BranchChange, is_followed
@@ -110,8 +109,7 @@ def follow_orbits(
 def _places(table: xarray.Dataset, changes: Sequence[BranchChange]) -> list[Place]:
     """Return the places of the periodic orbits that are followed: those on the grid of a, and those next to changes."""
     branch, side = (table[name].values for name in ("branch", "side"))
-    closed = np.array([[is_followed(table, *at) for at in np.ndindex(branch.shape)]]).reshape(branch.shape)
-    closed &= (branch >= 0) & (side >= 0)
+    closed = is_followed(table, *np.indices(branch.shape)) & (branch >= 0) & (side >= 0)
     mask = np.repeat(table["in_grid"].values[:, None] == 1, branch.shape[1], axis=1)
     for change in changes:
         for k, slot in ((change.low, change.before), (change.high, change.after)):
@@ -145,7 +143,8 @@ def _sort(orbits: Sequence[Placed]) -> list[Placed]:
     The longest come first, by octaves of their period, because they take the most time and a round ends with its last
     orbit. Within an octave orbits far from each other come first, because neighbours mostly lie on one segment.
     """
-    place = scipy.stats.qmc.Halton(1, scramble=False).random(len(orbits))[:, 0]
+    # Van der Corput's sequence: the binary digits of k, reversed behind the point.
+    place = [int(f"{k:b}"[::-1], 2) / 2 ** k.bit_length() for k in range(len(orbits))]
     order = np.lexsort([place, [-math.floor(math.log2(orbit.period)) for _, orbit in orbits]])
     return [orbits[k] for k in order]
 

@@ -23,9 +23,10 @@ class FormulaError(ValueError):
     """Raised for a formula that is not a friction law; the message gives the reason."""
 
 
-def formula_names(formula: str) -> set[str]:
+@lru_cache(maxsize=64)
+def formula_names(formula: str) -> frozenset[str]:
     """Return the names in a formula, except names of functions."""
-    return set(re.findall(r"\b[A-Za-z_]\w*", formula)) - set(FUNCTIONS)
+    return frozenset(re.findall(r"\b[A-Za-z_]\w*", formula)) - set(FUNCTIONS)
 
 
 def compile_formula(formula: str, values: Mapping[str, float]) -> Tape:

@@ -29,6 +29,7 @@ ROUNDING = 1e-12
 # Number of speeds at which the least friction is first sampled.
 SAMPLES = 256
 _FRACTIONS = np.linspace(0.0, 1.0, SAMPLES + 1)
+_SPEEDS = np.linspace(0.0, MAX_SPEED, 4 * SAMPLES + 1)
 
 
 class Law(Unchanging):
@@ -163,7 +164,12 @@ class Law(Unchanging):
     @cached_property
     def steepest_slope(self) -> float:
         """The largest modulus of the slope up to MAX_SPEED."""
-        return float(np.abs(self.slope(np.linspace(0.0, MAX_SPEED, 4 * SAMPLES + 1))).max())
+        return float(np.abs(self.slope(_SPEEDS)).max())
+
+    @cached_property
+    def initial_slope(self) -> float:
+        """The slope at the start of a slip."""
+        return float(self.slope(0.0))
 
     def least_friction(self, fastest: float) -> float:
         """Return the least friction at speeds from 0 to `fastest`."""

@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -26,8 +26,7 @@ LINEAR, MULTIPLY, RECIPROCAL, POWER, EXP, LOG = range(len(CODES))
 MAX_DEPTH = 12
 
 
-@dataclass(frozen=True)
-class Operation:
+class Operation(NamedTuple):
     """One operation: its code, the registers it reads (−1 for none), and its constants α, β, γ."""
 
     code: int
@@ -38,8 +37,7 @@ class Operation:
     gamma: float = 0.0
 
 
-@dataclass(frozen=True)
-class Term:
+class Term(NamedTuple):
     """A value on a tape under construction: scale · register + shift; a constant if register is −1."""
 
     register: int

@@ -162,9 +162,7 @@ class Model(Unchanging):
     @property
     def has_closed_form(self) -> bool:
         """Whether the motion between events is a sum of oscillating modes, as the solver `map` requires."""
-        return (
-            self.law.is_linear and self.chain.is_uniform and abs(float(self.law.slope(0.0))) < self.chain.damping_limit
-        )
+        return self.law.is_linear and self.chain.is_uniform and abs(self.law.initial_slope) < self.chain.damping_limit
 
     @property
     def scale(self) -> float:

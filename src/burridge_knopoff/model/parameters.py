@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 from burridge_knopoff.model.chain import BLOCK_PARAMETERS, SPRING_PARAMETERS, Chain
@@ -34,7 +35,12 @@ def parse_indexed_name(name: Any) -> tuple[str, int] | None:
 
     Returns None for any other name.
     """
-    match = _INDEXED_NAME.fullmatch(name) if isinstance(name, str) else None
+    return _parse(name) if isinstance(name, str) else None
+
+
+@lru_cache(maxsize=256)
+def _parse(name: str) -> tuple[str, int] | None:
+    match = _INDEXED_NAME.fullmatch(name)
     return (match[1], int(match[2])) if match else None
 
 

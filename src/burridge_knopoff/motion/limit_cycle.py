@@ -133,7 +133,7 @@ def _is_on_orbit(orbit: PeriodicOrbit, first: float, last: float, size: float) -
 def _cycle_distances(orbit: PeriodicOrbit, values: np.ndarray) -> tuple[float, float]:
     """Return the distances of the first and the last cycle of a motion from an orbit, by the events of the motion."""
     block = int(np.flatnonzero(orbit.stop_counts)[0]) + 1
-    around, _ = flow(orbit.model, orbit.reference, orbit.period)
+    around = flow(orbit.model, orbit.reference, orbit.period)
     orbit_stops, motion_stops = (
         _states_at_stops(events, block) / orbit.model.state_scale for events in (around.log.events.values(), values)
     )

@@ -155,7 +155,7 @@ def _step(
     vector, time, blocks = orbit.reference.vector(), orbit.return_time, model.blocks
     if before is not None:
         share = length / float(np.linalg.norm(place - plane.place(before.model)))
-        last = flow(before.model, before.reference, point.offset)[0].state()
+        last = flow(before.model, before.reference, point.offset).state()
         vector = vector + share * (vector - last.vector())
         time += share * (time - before.return_time)
     elif plane.kind != BifurcationKind.FOLD:

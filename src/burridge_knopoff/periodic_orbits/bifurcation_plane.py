@@ -114,7 +114,7 @@ class BifurcationPlane:
                 raise OrbitError(f"{line.place(orbit.model)}: the bifurcation becomes another one")
         offset = safe_offset(orbit)
         if offset:
-            state = flow(orbit.model, orbit.reference, offset)[0].state()
+            state = flow(orbit.model, orbit.reference, offset).state()
             orbit = orbit_of(orbit.model, state, orbit.return_time, self.symmetry)
         return CurvePoint(orbit, np.maximum(errors * self.units, ROUNDING), offset)
 

@@ -40,14 +40,11 @@ def new_runner(model: Model, perturbations: np.ndarray | None = None) -> Runner:
     return Runner(model, keep_events=True, perturbations=perturbations)
 
 
-def flow(model: Model, start: ChainState, time: float) -> tuple[Runner, tuple[tuple[float, int, int], ...]]:
-    """Return the runner after a time, and the events until then: time, block (0 …) and kind (0 stop, 1 start).
-
-    Raises OrbitError if the run does not complete.
-    """
+def flow(model: Model, start: ChainState, time: float) -> Runner:
+    """Return the runner after a time; raises OrbitError if the run does not complete."""
     runner = new_runner(model)
     state_after(runner, start, time)
-    return runner, tuple(zip(*(values.tolist() for values in runner.events()), strict=True))
+    return runner
 
 
 def state_after(runner: Runner, start: ChainState, time: float) -> ChainState:

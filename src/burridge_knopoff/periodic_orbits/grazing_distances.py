@@ -106,7 +106,7 @@ def distances_of(model: Model, orbit: PeriodicOrbit) -> GrazingDistances:
     position, velocity = results["position"], results["velocity"]
     stuck, event = (np.stack(rows, axis=1) for rows in zip(*_states(orbit, time), strict=True))
     whole = event[:-1] == event[1:]
-    again = Runner(model)
+    again = Runner(model, keep_events=True)
     speed, gap = np.full(model.blocks, np.inf), np.full(model.blocks, np.inf)
     chunks = [slice(first, first + CHUNK) for first in range(0, len(time), CHUNK)]
     parts = [_derivatives(model, position[chunk], velocity[chunk], stuck[chunk]) for chunk in chunks]
@@ -133,15 +133,19 @@ def distances_of(model: Model, orbit: PeriodicOrbit) -> GrazingDistances:
     if orbit.symmetry == Symmetry.SYMMETRIC:
         speed, gap = (np.minimum(least, least[::-1]) for least in (speed, gap))
     blocks = model.blocks
-    return GrazingDistances(np.array(lengths[:blocks]), np.array(lengths[blocks:]), speed, gap, _decelerations(orbit))
+    return GrazingDistances(
+        np.array(lengths[:blocks]), np.array(lengths[blocks:]), speed, gap, _decelerations(orbit, again)
+    )
 
 
-def _decelerations(orbit: PeriodicOrbit) -> np.ndarray:
-    """Return the smallest deceleration at the stops of each block; infinite if friction does not drop."""
+def _decelerations(orbit: PeriodicOrbit, runner: Runner) -> np.ndarray:
+    """Return the smallest deceleration at the stops of each block; infinite if friction does not drop.
+
+    runner : of the model of the orbit, with its events kept
+    """
     model = orbit.model
     least = np.full(model.blocks, np.inf)
     if has_friction_drop(model):
-        runner = Runner(model, keep_events=True)
         state_after(runner, orbit.reference, orbit.period)
         events = runner.log.events.values()
         for number, threshold in enumerate(model.chain.thresholds):

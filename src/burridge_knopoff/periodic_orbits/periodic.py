@@ -150,7 +150,7 @@ class PeriodicOrbit:
         time, kind = self.events_of(block)
         if not (kind == 0).any():
             raise OrbitError(f"block = {block!r}: it never stops on this orbit")
-        state = flow(self.model, self.reference, float(time[kind == 0][0]))[0].state()
+        state = flow(self.model, self.reference, float(time[kind == 0][0])).state()
         stuck = state.stuck.copy()
         stuck[block] = True
         return ChainState(state.position, np.where(stuck, 0.0, state.velocity), stuck)
@@ -305,7 +305,7 @@ def find_periodic_orbit(model: Model, guess: ChainState, return_time: float, sym
     period = return_time * (2 if symmetry == Symmetry.SYMMETRIC else 1)
     # The guess may coincide with a stop, which rounding may then place before or after it.
     times = sorted([*events[:, 0].tolist(), return_time, period])
-    guess = flow(model, guess, _safe_offset(times, period))[0].state()
+    guess = flow(model, guess, _safe_offset(times, period)).state()
     if symmetry == Symmetry.SYNCHRONIZED:
         vector = 0.5 * (guess.vector() + guess.vector()[mirror_order(model.blocks)])
         guess = ChainState(vector[: model.blocks], vector[model.blocks :], guess.stuck & guess.stuck[::-1])

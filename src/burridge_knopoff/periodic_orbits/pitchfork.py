@@ -87,5 +87,5 @@ def _center_on_end_stick(orbit: PeriodicOrbit) -> PeriodicOrbit:
     # The last event of an end block before the middle; before the first event comes the last one of a period.
     sticks = kind[np.searchsorted(at, middle) - 1] == 0
     chosen = float(middle[np.where(sticks, length, -np.inf).argmax()])
-    state = flow(orbit.model, orbit.reference, chosen)[0].state()
+    state = flow(orbit.model, orbit.reference, chosen).state()
     return refine_orbit(orbit_of(orbit.model, state, orbit.return_time, orbit.symmetry))

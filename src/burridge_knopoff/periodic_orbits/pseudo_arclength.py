@@ -237,22 +237,23 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
     offset = safe_offset(solution)
     if offset == 0.0:
         return BranchOrbit(solution, following, line, length)
-    carried = _carry_tangent(solution, following, offset, line)
-    state = flow(model, solution.reference, offset)[0].state()
+    state = flow(model, solution.reference, offset).state()
+    carried = _carry_tangent(solution, following, state, offset, line)
     moved = orbit_of(model, state, solution.return_time, orbit.symmetry)
     following = tangent_of(moved, line)
     side = following @ (weights(model, line) * carried)
     return BranchOrbit(moved, following if side > 0.0 else -following, line, length)
 
 
-def _carry_tangent(orbit: PeriodicOrbit, tangent: np.ndarray, time: float, line: ParameterLine) -> np.ndarray:
-    """Return a tangent transported to the state a time after the reference, perpendicular to the flow there."""
+def _carry_tangent(
+    orbit: PeriodicOrbit, tangent: np.ndarray, end: ChainState, time: float, line: ParameterLine
+) -> np.ndarray:
+    """Return a tangent transported to the state `end` a time after the reference, perpendicular to the flow there."""
     blocks = orbit.model.blocks
     vector = orbit.reference.vector() + PART * tangent[:-2]
     near = ChainState(vector[:blocks], vector[blocks:], orbit.reference.stuck)
-    end = flow(orbit.model, orbit.reference, time)[0].state()
     model = line.model(orbit.model, line.coordinate(orbit.model) + PART * float(tangent[-1]))
-    shifted_end = flow(model, near, time)[0].state()
+    shifted_end = flow(model, near, time).state()
     scale = line.units.state(blocks)
     change = (shifted_end.vector() - end.vector()) / PART / scale
     along = rate(orbit.model, end) * line.units.time / scale

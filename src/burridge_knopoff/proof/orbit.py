@@ -85,7 +85,7 @@ def arcs_of(orbit: PeriodicOrbit) -> tuple[tuple[Arc, ...], list[float]]:
     slipping = before[first + 1 :] + before[: first + 1]
     flow_of_law = flow_of(orbit.model)
     arcs = [Arc(state, block, flow_of_law) for state, (_, block) in zip(slipping, cycle[1:], strict=True)]
-    start = flow(orbit.model, orbit.reference, cycle[0][0])[0].state()
+    start = flow(orbit.model, orbit.reference, cycle[0][0]).state()
     position = [float(x) / orbit.model.v for x in start.position[:POSITIONS]]
     return tuple(arcs), position + [late - early for (early, _), (late, _) in pairwise(cycle)]
 

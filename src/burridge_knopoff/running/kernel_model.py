@@ -40,7 +40,7 @@ def kernel_model(model: Model, loading: str = "steady") -> KernelModel:
         value=law.tape.value,
         slope=law.tape.slope,
         linear=law.is_linear,
-        rate=-float(law.slope(0.0)),
+        rate=-law.initial_slope,
         steepest=law.steepest_slope,
         v=v,
         symmetric=model.contact == "symmetric",
@@ -74,7 +74,7 @@ def rest_speed(model: Model) -> float:
 
 
 def _can_creep(model: Model) -> bool:
-    return model.chain.is_damped or float(model.law.slope(0.0)) > 0.0
+    return model.chain.is_damped or model.law.initial_slope > 0.0
 
 
 def _has_unpulled_creep(model: Model) -> bool:
@@ -84,7 +84,7 @@ def _has_unpulled_creep(model: Model) -> bool:
     start, index, _, _ = chain.neighbours
     if (np.repeat(unpulled, np.diff(start)) & unpulled[index]).any():
         return True
-    damping = chain.damping_diagonal + chain.thresholds * float(model.law.slope(0.0))
+    damping = chain.damping_diagonal + chain.thresholds * model.law.initial_slope
     critical = 2.0 * np.sqrt(chain.diagonal * chain.masses)
     return bool((unpulled & (damping >= (1.0 - CRITICAL) * critical)).any())
 
@@ -92,5 +92,5 @@ def _has_unpulled_creep(model: Model) -> bool:
 def _resistance(model: Model) -> np.ndarray:
     """Return the force per speed that slows each block at most, by its springs or by damping."""
     chain = model.chain
-    damping = chain.damping_diagonal + chain.thresholds * max(float(model.law.slope(0.0)), 0.0)
+    damping = chain.damping_diagonal + chain.thresholds * max(model.law.initial_slope, 0.0)
     return np.maximum(np.sqrt(chain.diagonal * chain.masses), damping)

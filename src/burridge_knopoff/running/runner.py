@@ -33,6 +33,9 @@ LOCKSTEP_RUNS = 64
 # relative to the largest of 1, the driver velocity and the speed of the fastest block.
 ROUNDING = 1e-12
 
+# A window that never begins, and no times at which anything is measured.
+NEVER, NONE = np.full(2, math.inf), np.zeros(0)
+
 
 class Runner:
     """A solver of one model.
@@ -85,10 +88,10 @@ class Runner:
         blocks = model.blocks
         rate_limit = EVENTS_PER_BLOCK_AND_UNIT * blocks
         self.log = EventLog(blocks, events_from, keep_events, rate_limit, stops_only, MOST_NUMBERS)
-        self.observer = observer if observer is not None else new_observer(model, [math.inf, math.inf])
+        nothing = 0.0, NEVER, NONE, NONE, NONE, False, 0, MOST_NUMBERS
+        self.observer = observer if observer is not None else Observer(blocks, *nothing)
         if exponents is None:
-            count = 0 if perturbations is None else perturbations.shape[1]
-            exponents = Exponents(blocks, count, math.inf, np.array([math.inf, math.inf]))
+            exponents = Exponents(blocks, 0 if perturbations is None else perturbations.shape[1], math.inf, NEVER)
         self.exponents = exponents
         self.kernel: Run | TimeStepping
         if stepping:
@@ -236,7 +239,7 @@ def check_state(model: Model, at: ChainState) -> None:
 
 def _check_blocks(model: Model, at: ChainState) -> None:
     blocks = model.blocks
-    if not isinstance(at, ChainState) or {np.shape(x) for x in (at.position, at.velocity, at.stuck)} != {(blocks,)}:
+    if not isinstance(at, ChainState) or {at.position.shape, at.velocity.shape, at.stuck.shape} != {(blocks,)}:
         raise refusal("state", at, f"a ChainState of {blocks} blocks")
 
 

@@ -221,7 +221,7 @@ def modes(orbit: PeriodicOrbit) -> np.ndarray:
 
 def _is_constant(law: Law) -> bool:
     """Return whether friction equals static friction at every speed."""
-    return law.is_linear and float(law.slope(0.0)) == 0.0 and float(law(0.0)) == 1.0
+    return law.is_linear and law.initial_slope == 0.0 and float(law(0.0)) == 1.0
 
 
 def _fill_transition(values: dict[str, Any], i: int, orbits: KnownOrbits | None, asymmetry: np.ndarray) -> None:
