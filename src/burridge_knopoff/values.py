@@ -80,7 +80,7 @@ def real_array(values: Any, key: str) -> np.ndarray:
     if type(values) in (float, np.ndarray) and (plain := np.asarray(values)).dtype.kind in "iuf":
         return plain.astype(float)
     try:
-        array = values if isinstance(values, np.ndarray) else np.ma.asarray(values)
+        array = np.ma.asarray(values)
     except (TypeError, ValueError):
         array = np.ma.asarray(None)
     if array.dtype.kind not in "iuf":
