@@ -14,6 +14,7 @@ from burridge_knopoff.messages import LONGEST, cut, format_value, full_key, refu
 from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
 from burridge_knopoff.values import number_in
+from tests.conftest import random_examples
 from tests.fuzzing import examples
 from tests.refused import refused
 
@@ -54,8 +55,7 @@ def endless():
     return value
 
 
-@given(VALUES)
-@examples(500)
+@random_examples(100, 500, VALUES)
 def test_values_are_shown_as_python_writes_them_long_ones_shortened(value):
     text, whole = format_value(value), " ".join(repr(value).split())
     assert text.isprintable()

@@ -15,6 +15,7 @@ from typing import Any
 
 from burridge_knopoff.outputs import File
 from burridge_knopoff.provenance.record import read_study_record
+from burridge_knopoff.provenance.sources import source_fingerprint
 
 ROOT = Path(__file__).parents[2]
 
@@ -77,10 +78,11 @@ def planned(config: Mapping[str, Any], *targets: str) -> PlannedStudy:
 
 @cache
 def _load_snakemake() -> None:
-    """Import Snakemake with its plugins once, and not in each child, where this takes half of a plan."""
+    """Import Snakemake with its plugins and read the sources once: in each child this would take half of a plan."""
     from snakemake.cli import get_argument_parser
 
     get_argument_parser()
+    source_fingerprint(*(ROOT / "workflow/scripts").glob("*.py"))
 
 
 def _plan(results: str, targets: tuple[str, ...]) -> PlannedStudy:
