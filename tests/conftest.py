@@ -171,12 +171,12 @@ def script_answers(monkeypatch):
 @pytest.fixture
 def maps(monkeypatch):
     """Let searches follow maps of the line, see `tests.maps`."""
-    from burridge_knopoff.attractors import convergence, labels, slow_set
+    from burridge_knopoff.attractors import convergence, labels, search, slow_set
     from burridge_knopoff.motion import classification
     from tests.maps import Clouds, Ensemble, observe, visit
 
-    monkeypatch.setattr(convergence, "visit", visit)
-    monkeypatch.setattr(slow_set, "visit", visit)
+    for module in (convergence, search, slow_set):
+        monkeypatch.setattr(module, "visit", visit)
     monkeypatch.setattr(labels, "new_ensemble", Ensemble)
     monkeypatch.setattr(labels, "Clouds", Clouds)
     monkeypatch.setattr(classification, "observe", observe)

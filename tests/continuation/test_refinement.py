@@ -22,7 +22,7 @@ def values():
         calls = []
 
         class Scripted(Search):
-            def labels(self, starts, check=True):
+            def find(self, starts, check=True):
                 calls.append((self.model.a, sorted(start.position[1] for start in starts), self.trials, check))
                 self.attractors = attractors(self.model.a)
 

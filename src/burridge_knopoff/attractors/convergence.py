@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -64,7 +65,7 @@ class Convergence:
         """Distance below which two attractors count as one."""
         return self.settings.resolution * self.model.scale
 
-    @property
+    @cached_property
     def tolerance(self) -> float:
         """Distance within which the returns of a periodic orbit repeat."""
         return self.motion_settings.scaled_to_velocity(self.model.v).period_tolerance

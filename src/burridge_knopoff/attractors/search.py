@@ -12,8 +12,8 @@ import numpy as np
 
 from burridge_knopoff.attractors.attractor import CLOSE_RETURNS, Attractor, perturb, required_returns
 from burridge_knopoff.attractors.capture_radius import SMALLEST_RADIUS, TINY_RADIUS, Capture, embedded_orbits
-from burridge_knopoff.attractors.convergence import Convergence
-from burridge_knopoff.attractors.labels import UNDETERMINED, label, label_arrays, stack_states
+from burridge_knopoff.attractors.convergence import FILLING_WINDOWS, Convergence
+from burridge_knopoff.attractors.labels import UNDETERMINED, advance, label, label_arrays, stack_states
 from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
 from burridge_knopoff.attractors.slow_set import SLOW_TIME, sample_slow_set
 from burridge_knopoff.messages import refusal
@@ -22,7 +22,7 @@ from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.sampling import sample_initial_states
 from burridge_knopoff.motion.kind import CHAOS
 from burridge_knopoff.motion.observables import SteadyMotion, is_on_attractor
-from burridge_knopoff.motion.section_returns import Returns, state_of
+from burridge_knopoff.motion.section_returns import Returns, state_of, visit
 from burridge_knopoff.motion.set_distance import is_near
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbit
@@ -128,12 +128,11 @@ class Search(Convergence):
        (`candidates`).
     4. Add the first candidate that attracts: perturbations within a capture radius come back (`accept`). Return to
        step 1 with the new attractor. If no candidate attracts, perturb the state off the motion and repeat step 2.
-    5. Label all states by the attractor that captures them (`known_labels`). Follow undecided states as in step 2, and
-       label all again if there is a new attractor.
-    6. Follow some of the labelled states until they are closer. If they settle elsewhere, add that attractor, halve the
-       capture radius and repeat step 5 (`_verify_labels`, `_verify_chaotic_labels`).
+    5. Follow some of the states until they are closer to their attractors. If they settle elsewhere, add that
+       attractor, halve the capture radius and repeat all steps (`_verify_labels`, `_verify_chaotic_labels`).
 
-    Calls of `labels` carry out steps 1 to 6 and keep the attractors for the next call.
+    Calls of `find` carry out steps 1 to 5 and keep the attractors for the next call. `known_labels` labels states by
+    the attractors that capture them.
 
     attractors : those found so far
     unsuccessful_states : states that were followed without finding a new attractor, as bytes
@@ -160,59 +159,69 @@ class Search(Convergence):
         return [self.model.begin(state, start) for state in (*drawn, *initial)]
 
     def labels(self, starts: Sequence[ChainState], check: bool = True) -> np.ndarray:
-        """Return the index of the attractor that each state reaches, after adding attractors that were not known.
+        """Return the index of the attractor that each state reaches, −1 for none, after `find`."""
+        self.find(starts, check)
+        return self.known_labels(starts)
 
-        −1 if a trajectory does not settle on an attractor.
+    def find(self, starts: Sequence[ChainState], check: bool = True) -> None:
+        """Add the attractors that the states reach.
+
         check : whether some of the labels are verified by following the trajectories for longer
         """
-        self._discover_all(starts)
         for _ in range(ROUNDS):
-            labels = self.known_labels(starts)
-            if self.discover([starts[k] for k in np.flatnonzero(labels == UNDETERMINED).tolist()]):
-                continue
-            if not check or (self._verify_labels(starts, labels) and self._verify_chaotic_labels(starts, labels)):
+            labels = self._discover_all(starts)
+            if not check or (self._verify_labels(starts) and self._verify_chaotic_labels(starts, labels)):
                 break
-        return labels
 
-    def _discover_all(self, starts: Sequence[ChainState]) -> None:
-        """Add the attractors to which some of the states lead that reach none of those that are known.
+    def _discover_all(self, starts: Sequence[ChainState]) -> np.ndarray:
+        """Add the attractors to which some of the states lead, and return the first one that each state comes near.
 
         Most states are decided early, so all of them are followed for a short time first. A state that is not decided
         continues where it is, and is compared with the new attractors only.
         """
-        undecided, states = list(starts), stack_states(starts)
+        labels = np.full(len(starts), UNDETERMINED, dtype=np.intc)
+        undecided, states = np.arange(len(starts)), stack_states(starts)
         for time in (QUICK_SEARCH * self.settings.transient, self.settings.time_limit):
-            new: Sequence[Attractor] = self.attractors
+            count = 0
             for _ in range(ROUNDS):
-                if new and undecided:
+                if self.attractors[count:] and len(undecided):
                     # Whether a state stays in chaos or goes on to an orbit embedded in it, it is decided.
-                    prompt = [replace(item, patience=0.0) for item in new]
-                    labels, _, ends = label_arrays(self.model, prompt, *states, time)
-                    left = np.flatnonzero(labels == UNDETERMINED)
-                    undecided = [undecided[k] for k in left.tolist()]
-                    states = stack_states([state_of(end) for end in ends[left]])
+                    prompt = [replace(item, patience=0.0) for item in self.attractors[count:]]
+                    reached, _, ends = label_arrays(self.model, prompt, *states, time)
+                    left = reached == UNDETERMINED
+                    labels[undecided] = np.where(left, UNDETERMINED, count + reached)
+                    undecided, states = undecided[left], stack_states([state_of(end) for end in ends[left]])
                 count = len(self.attractors)
-                if not self.discover(undecided):
+                labels[undecided] = self.discover([starts[k] for k in undecided.tolist()])
+                left = labels[undecided] == UNDETERMINED
+                undecided, states = undecided[left], tuple(part[left] for part in states)
+                if len(self.attractors) == count:
                     break
-                new, time = self.attractors[count:], QUICK_SEARCH * self.settings.transient
+                time = QUICK_SEARCH * self.settings.transient
+        return labels
 
     def _verify_chaotic_labels(self, starts: Sequence[ChainState], labels: np.ndarray) -> bool:
-        """Follow a few states assigned to chaotic attractors, and return whether they lead to no new attractor."""
+        """Follow a few states assigned to chaotic attractors, and return whether they lead to no new attractor.
+
+        A state whose motion at the time limit is not on a known attractor is followed from there until it settles.
+        """
         count = len(self.attractors)
-        for index, attractor in enumerate(self.attractors):
-            if attractor.slow or attractor.motion.kind not in CHAOS:
-                continue
-            for k in np.flatnonzero(labels == index)[:VERIFIED_CHAOTIC_STATES]:
-                self.reach(starts[k])
+        chaotic = [k for k, item in enumerate(self.attractors) if not item.slow and item.motion.kind in CHAOS]
+        chosen = [k for index in chaotic for k in np.flatnonzero(labels == index)[:VERIFIED_CHAOTIC_STATES].tolist()]
+        for state in advance(self.model, [starts[k] for k in chosen], self.settings.time_limit) if chosen else ():
+            section = visit(self.model, state, 0.0, FILLING_WINDOWS * self.settings.window)
+            if section is None or self._attractor_of(section) == UNDETERMINED:
+                self.reach(state)
         return len(self.attractors) == count
 
-    def _verify_labels(self, starts: Sequence[ChainState], labels: np.ndarray) -> bool:
-        """Follow the first states until they are much closer to their attractors, and return whether all are.
+    def _verify_labels(self, starts: Sequence[ChainState]) -> bool:
+        """Label the first states and follow them until they are much closer; return whether all stay with their labels.
 
         If a state settles elsewhere, an unknown attractor lies within the radius. It is added, and the radius of the
         attractor to which the state was assigned is halved.
         """
-        starts, labels = starts[:VERIFIED_STATES], labels[:VERIFIED_STATES]
+        starts = starts[:VERIFIED_STATES]
+        labels = self.known_labels(starts)
         narrow = [
             replace(item, radius=self.capture.recovery_distance(item.motion, item.radius)) for item in self.attractors
         ]
@@ -227,20 +236,22 @@ class Search(Convergence):
                     self.attractors[index] = replace(self.attractors[index], radius=attractor.radius / 2)
         return verified
 
-    def discover(self, starts: Sequence[ChainState]) -> bool:
-        """Follow up to ATTEMPTS undecided states, and return whether one leads to a new attractor."""
-        count = len(self.attractors)
-        fresh = {
-            state: start for start in starts if (state := start.vector().tobytes()) not in self.unsuccessful_states
-        }
-        for state, start in list(fresh.items())[:ATTEMPTS]:
+    def discover(self, starts: Sequence[ChainState]) -> np.ndarray:
+        """Follow up to ATTEMPTS undecided states until one leads to a new attractor.
+
+        Returns the index of the attractor on which each of them has settled, −1 if there is none or it is not followed.
+        """
+        labels, count = np.full(len(starts), UNDETERMINED, dtype=np.intc), len(self.attractors)
+        states = {start.vector().tobytes(): k for k, start in enumerate(starts)}
+        fresh = [state for state in states if state not in self.unsuccessful_states]
+        for state in fresh[:ATTEMPTS]:
             if len(self.unsuccessful_states) >= self.max_unsuccessful:
                 break
-            self.reach(start)
+            labels[states[state]] = self.reach(starts[states[state]])
             if len(self.attractors) > count:
-                return True
+                break
             self.unsuccessful_states += (state,)
-        return False
+        return labels
 
     def known_labels(self, starts: Sequence[ChainState]) -> np.ndarray:
         """Return the index of the known attractor that each state reaches, −1 for none."""
@@ -250,24 +261,29 @@ class Search(Convergence):
     def reach(self, start: ChainState) -> int:
         """Follow one state until it has settled, and return the index of its attractor, which may be a new one."""
         generator = np.random.default_rng(self.settings.seed)
-        resolution = self.resolution
         for _ in range(self.trials):
             section = self.settle(start)
             if section is None:
                 return UNDETERMINED
-            for index, attractor in enumerate(self.attractors):
-                if attractor.slow or not is_on_attractor(section, attractor.motion, resolution, self.tolerance):
-                    continue
+            index = self._attractor_of(section)
+            if index != UNDETERMINED:
                 return index
-            # Periodic orbits on a slow set are part of it.
-            for index, attractor in enumerate(self.attractors):
-                if attractor.slow and is_near(section.returns, attractor.motion.returns, resolution):
-                    return index
             index = len(self.attractors)
             if self._add(section):
                 return index
             # The trajectory has come very close to an unstable motion. It continues from a perturbation off it.
-            start = perturb(section.state(), UNSTABLE_PUSH * resolution, generator)
+            start = perturb(section.state(), UNSTABLE_PUSH * self.resolution, generator)
+        return UNDETERMINED
+
+    def _attractor_of(self, section: Returns) -> int:
+        """Return the index of the attractor on which a motion lies, −1 if it lies on none that is known."""
+        for index, attractor in enumerate(self.attractors):
+            if not attractor.slow and is_on_attractor(section, attractor.motion, self.resolution, self.tolerance):
+                return index
+        # Periodic orbits on a slow set are part of it.
+        for index, attractor in enumerate(self.attractors):
+            if attractor.slow and is_near(section.returns, attractor.motion.returns, self.resolution):
+                return index
         return UNDETERMINED
 
     def _add(self, section: Returns) -> bool:

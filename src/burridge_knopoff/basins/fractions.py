@@ -151,5 +151,6 @@ def _label_next(states: NextStates, start: str) -> np.ndarray:
 def _search_from_undetermined(search: Search, labels: np.ndarray, start: str) -> tuple[Search, bool]:
     """Search from the states that reach no attractor; return the search, and whether it found a new attractor."""
     drawn = _draw_states(search, start, 0, len(labels))
-    lost = np.flatnonzero(labels == UNDETERMINED)
-    return search, search.discover([ChainState(*(values[k] for values in drawn)) for k in lost.tolist()])
+    lost, count = np.flatnonzero(labels == UNDETERMINED), len(search.attractors)
+    search.discover([ChainState(*(values[k] for values in drawn)) for k in lost.tolist()])
+    return search, len(search.attractors) > count

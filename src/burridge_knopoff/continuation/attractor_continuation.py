@@ -129,7 +129,7 @@ def continue_attractors(
 
 def _search(search: Search, starts: Sequence[InitialState], start: str) -> Search:
     """Find attractors from initial states."""
-    search.labels(search.starts(starts, start))
+    search.find(search.starts(starts, start))
     return search
 
 
@@ -168,7 +168,7 @@ def _seeded_search(source: Search, target: Search, matcher: Matcher) -> Search |
         return None
     # Earlier unsuccessful states do not count against the seeds.
     target = replace(target, attractors=list(target.attractors), unsuccessful_states=())
-    target.labels(target.seeds(item.attractor for item in lacking.values()), check=False)
+    target.find(target.seeds(item.attractor for item in lacking.values()), check=False)
     return target
 
 

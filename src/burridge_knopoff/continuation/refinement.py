@@ -114,7 +114,7 @@ def _gap(left: Search, right: Search, before: Sequence[int], after: Sequence[int
 def _bisect(gap: Gap, matcher: Matcher) -> tuple[Search, Differing, Differing]:
     """Follow attractors at the middle of a gap; return the search there, and what differs below and above it."""
     middle = replace(gap.search, model=gap.first.at(0.5 * (gap.first.a + gap.last.a)), attractors=[])
-    middle.labels(middle.seeds([*gap.before, *gap.after]), check=False)
+    middle.find(middle.seeds([*gap.before, *gap.after]), check=False)
     sources, before, after = (
         {k: Outline(item) for k, item in enumerate(attractors)}
         for attractors in ([*gap.unchanged, *gap.before], gap.before, gap.after)
