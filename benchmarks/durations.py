@@ -3,9 +3,8 @@
     python benchmarks/durations.py config/paper.yaml config/smoke.yaml
 
 For each rule: the mean wall time of a job times its threads, and its size, at the smallest and at the largest work in
-these studies. Points are threads of Snakemake and have no wall time of their own: theirs is the time between two of
-them, times the cores. Durations of rules that did not run are scaled as those of the others have changed. Other
-programs on the machine would count.
+these studies. Durations of rules that did not run are scaled as those of the others have changed. Other programs on
+the machine would count.
 """
 
 import json
@@ -14,21 +13,9 @@ from collections import defaultdict
 from pathlib import Path
 
 import numpy as np
-from replay import POINTS, planned
+from replay import planned
 
 from snakemake_logger_plugin_study.durations import FILE, SHIPPED, measured_seconds, work_of
-
-#: Of the run of the studies.
-CORES = 2
-
-
-def written(plan):
-    """Return {rule: the times at which its files were written} of the rules whose jobs are threads."""
-    times = defaultdict(list)
-    for job in plan.workflow.dag.jobs:
-        if job.rule.name in POINTS and Path(job.output[0]).is_file():
-            times[job.rule.name].append(Path(job.output[0]).stat().st_mtime)
-    return {rule: moments for rule, moments in times.items() if len(moments) > 1}
 
 
 def main():
@@ -37,10 +24,9 @@ def main():
     for config in sys.argv[1:]:
         plan = planned(config, "all", "chains")
         work = work_of(plan.study)
-        between = {rule: CORES * np.median(np.diff(sorted(times))) for rule, times in written(plan).items()}
+        files = {number: job.benchmark for number, job in plan.look_ahead().jobs.items()}
         for job in plan.workflow.dag.jobs:
-            own = measured_seconds(job.benchmark, int(job.threads)) if job.benchmark else None
-            seconds = between.get(job.rule.name, own)
+            seconds = measured_seconds(files.get(plan.workflow.dag.jobid(job), ""), int(job.threads))
             if seconds is not None:
                 size = sum(path.stat().st_size for path in map(Path, job.output) if path.is_file())
                 jobs[job.rule.name][work.get(job.rule.name, work["all points"])].append((seconds, size))

@@ -16,11 +16,10 @@ import argparse
 import heapq
 import re
 import sys
-from collections import defaultdict
+from collections import Counter, defaultdict
 from dataclasses import replace
 from pathlib import Path
 
-from burridge_knopoff.outputs import benchmark_of
 from snakemake_logger_plugin_study.dry_run import dry_run
 from snakemake_logger_plugin_study.durations import Durations, measured_seconds
 from snakemake_logger_plugin_study.run import DONE, RUNNING, WAITING
@@ -30,8 +29,10 @@ MOMENTS, LEAST = 400, 10.0
 #: Rules whose jobs are threads of Snakemake.
 POINTS = ("simulate", "simulate_solver")
 
-#: Seconds of a point in which no other point can run Python: `snakemake -c1 points`, without the runs themselves.
-SERIAL = 0.03
+#: Share of the time of a point in which no other point can run Python: all but the run itself.
+SERIAL = 0.6
+#: Cores of the run that is replayed.
+RECORDED = 2
 
 LONG = re.compile(r"(.+)_of_law law=(\w+)")
 PART = re.compile(r"^(.+): \d+, ([\d.]+) s, the longest ([\d.]+) s(; \d+ from the cache)?$", re.MULTILINE)
@@ -50,16 +51,10 @@ def recorded(config, cores=2):
     priority = {dag.jobid(job): job.priority for job in dag.jobs}
     run.jobs = dict(sorted(run.jobs.items(), key=lambda item: -priority[item[0]]))
     run.cores = cores
-    files = {dag.jobid(job): job.benchmark or benchmark_of_point(job, run.results) for job in dag.jobs}
-    took = {number: measured_seconds(files[number], 1) for number in run.jobs}
+    took = {number: measured_seconds(job.benchmark, 1) for number, job in run.jobs.items()}
     if missing := [run.jobs[number].name for number, seconds in took.items() if seconds is None]:
         sys.exit(f"{config}: no benchmark file of {missing[0]} and {len(missing) - 1} more: run the study first")
     return run, took
-
-
-def benchmark_of_point(job, results):
-    """Return the file with the time of a point, which has no process of its own."""
-    return Path(results, benchmark_of(Path(job.log[0]).relative_to(results).as_posix())) if job.log else ""
 
 
 def estimates(run, seconds):
@@ -125,6 +120,11 @@ def parts_of(results, job):
     ]
 
 
+def waits(cores):
+    """Return how much longer a point takes where so many threads of Snakemake share its Python."""
+    return max(1.0, SERIAL * cores)
+
+
 def jobs_on(cores, jobs, seconds, parts):
     """Return the jobs and their seconds on so many cores.
 
@@ -134,11 +134,9 @@ def jobs_on(cores, jobs, seconds, parts):
     laws = sum(job.rule == "attractors_of_law" for job in jobs.values())
     processes = max(1, cores // max(1, laws))
     shared = {number: pieces for number, pieces in parts.items() if pieces}
-    # Threads wait for each other.
-    took = {
-        number: max(value, cores * SERIAL) if jobs[number].rule in POINTS else value
-        for number, value in seconds.items()
-    }
+    counts = Counter(job.rule for job in jobs.values() if job.rule in POINTS)
+    waiting = {rule: waits(min(cores, count)) / waits(RECORDED) for rule, count in counts.items()}
+    took = {number: value * waiting.get(jobs[number].rule, 1.0) for number, value in seconds.items()}
     wide = {
         number: replace(job, threads=processes if number in shared else 1, cores=0.0) for number, job in jobs.items()
     }
@@ -159,14 +157,17 @@ def on_other_cores(config):
     print("|------:|----------------:|------------------------:|---------:|-------:|")
     for cores in (2**power for power in range(9)):
         ends = schedule(*jobs_on(cores, jobs, seconds, parts), cores)
-        first = min(end for number, end in ends.items() if jobs[number].rule == "figure_mean_distance")
+        first = min(end for number, end in ends.items() if jobs[number].stage == "curves" and jobs[number].needs)
         curves = max(end for number, end in ends.items() if jobs[number].stage == "curves")
         took = max(ends.values())
         print(f"| {cores:5d} | {first:15.1f} | {curves:23.1f} | {took:8.1f} | {alone / took:6.1f} |")
     print("\nthe longest chain:")
     many = 1000 * len(jobs)
-    # No job waits for a core.
-    least = jobs_on(many, jobs, seconds, parts)[1]
+    # No job waits for a core, and no point for another.
+    least = {
+        number: seconds[number] if jobs[number].rule in POINTS else value
+        for number, value in jobs_on(many, jobs, seconds, parts)[1].items()
+    }
     ends = schedule(jobs, least, many)
     number = max(ends, key=ends.get)
     while number is not None:

@@ -112,10 +112,7 @@ class LogHandler(LogHandlerBase):
                     self._next_line = job.begin + PACE
                     self._write(progress_line(run, job.begin))
             case LogEvent.JOB_FINISHED if job := run.jobs.get(record.job_id):
-                # A job without its own process shares that of Snakemake.
-                elapsed = (time.monotonic() - job.begin) * job.cores
-                job.seconds = measured_seconds(job.benchmark, job.cores) if job.benchmark else elapsed
-                job.state = DONE
+                job.seconds, job.state = measured_seconds(job.benchmark, job.cores), DONE
             # Snakemake 9.22 reports each failure twice.
             case LogEvent.JOB_ERROR if (job := run.jobs.get(record.jobid)) and job.state != FAILED:
                 job.state, job.log = FAILED, record.log or []

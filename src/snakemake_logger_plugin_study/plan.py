@@ -9,7 +9,7 @@ from typing import Any
 
 from snakemake.logging import logger
 
-from burridge_knopoff.outputs import outputs, stage_of
+from burridge_knopoff.outputs import benchmark_of, outputs, stage_of
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.study import Study
 from snakemake_logger_plugin_study import internals
@@ -50,7 +50,7 @@ class Plan:
         # If more are requested than there are, each thread of a busy run has a share of a core.
         share = cores / requested
         for job in wanted:
-            if job.benchmark and (seconds := measured_seconds(job.benchmark, share * job.threads)) is not None:
+            if (seconds := measured_seconds(self._benchmark(job), share * job.threads)) is not None:
                 last[job.rule.name].append(seconds)
         jobs = {
             number: Job(
@@ -60,7 +60,7 @@ class Plan:
                 threads=min(int(job.threads), available),
                 cores=share * job.threads,
                 needs=frozenset(needs),
-                benchmark=str(job.benchmark or ""),
+                benchmark=self._benchmark(job),
             )
             for number, job, needs in internals.planned_jobs(self.workflow)
         }
@@ -74,3 +74,8 @@ class Plan:
             internals.is_touching(self.workflow),
             internals.newer_inputs(self.workflow),
         )
+
+    def _benchmark(self, job: Any) -> str:
+        """Return the file with the duration of a job of the study, by Snakemake or, for a point, by the job itself."""
+        logs = [log.removeprefix(f"{self.results}/") for log in job.log if log.startswith(f"{self.results}/")]
+        return str(job.benchmark or next((f"{self.results}/{benchmark_of(log)}" for log in logs), ""))

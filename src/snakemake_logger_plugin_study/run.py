@@ -23,7 +23,7 @@ class Job:
     cores : number of cores that it has while all requested cores are busy: fewer if more are requested than there
         are; by default as many as threads
     needs : numbers of the jobs on which it depends
-    benchmark : the file with its duration, written by Snakemake; empty for jobs in threads of Snakemake
+    benchmark : the file with its duration, written by Snakemake or, for a point, by the job itself
     begin, since : when it began, by a clock that is never set, and by the clock of its files
     seconds : its duration times its cores; None if it has not finished or was not measured
     """
