@@ -111,6 +111,8 @@ def test_a_study_survives_a_kill_a_restart_and_a_cancellation(finished, cluster,
     study = Study(tmp_path / "study", TINY.replace("\ntransient: 100\n", "\ntransient: 30000000\n"))
     first = Run(study, "--group-components", "points=1")
     first.until(lambda: cluster.running(".points.") and "PENDING" in dict(cluster.queue().values()).values())
+    # A job reads the config before it opens the log of a point.
+    first.until(lambda: [*study.folder.glob("results/tiny/logs/simulate/*/*/*.log")])
     first.kill()
     cluster.do("node")
     left = {number for number, _ in cluster.queue().values()}
