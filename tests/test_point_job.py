@@ -123,18 +123,19 @@ def test_a_flag_ends_a_long_run_in_its_thread(tmp_path):
 
 
 INTERRUPTED = """
-import sys, threading
+from concurrent.futures import ThreadPoolExecutor
 from burridge_knopoff.point_job import run_point_job, stop_on_interrupt
 from burridge_knopoff.study.load import load_study
 study, stop = load_study({config!r}, "short.yaml"), stop_on_interrupt()
 arguments = study, {point!r}, "point.nc", "logs/point.log", ".", stop
-thread = threading.Thread(target=run_point_job, args=arguments)
-thread.start()
+pool = ThreadPoolExecutor(1)
+job = pool.submit(run_point_job, *arguments)
 print("begun", flush=True)
 try:
-    thread.join()
+    job.result()
 except KeyboardInterrupt:
-    thread.join()
+    # As Snakemake does.
+    pool.shutdown()
     print("interrupted")
 """
 

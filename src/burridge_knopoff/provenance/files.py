@@ -90,9 +90,9 @@ def reserve_room(stream: TextIO | None) -> None:
     Other streams are left alone.
     """
     if stream is not None:
-        room = reserved_room(stream)
-        room.__enter__()
-        atexit.register(room.__exit__, None, None, None)
+        room = contextlib.ExitStack()
+        room.enter_context(reserved_room(stream))
+        atexit.register(room.close)
 
 
 @contextlib.contextmanager
