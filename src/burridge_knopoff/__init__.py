@@ -9,6 +9,8 @@ Runs: `simulate` returns a `Run`, whose `Trajectory` is computed with `Settings`
 computes many runs over any parameters. `open_study` opens the results of a study, and `decode_flags` translates the
 values of a flag.
 
+Pictures: `plot` draws each of these results, and all those below, as the figures of a study.
+
 Slip events: `record_events` and `Run.catalogue` return a `Catalogue` with the `SlipEvents` of a run. `fit_slope` fits
 the `Slope` of their magnitudes. `event_multipliers` and `event_exponents` return the multipliers and the
 `EventExponents` of the map from event to event.

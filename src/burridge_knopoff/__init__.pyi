@@ -20,6 +20,7 @@ from .library.catalogue import Catalogue as Catalogue
 from .library.catalogue import record_events as record_events
 from .library.find_attractors import find_attractors as find_attractors
 from .library.open_study import open_study as open_study
+from .library.plot import plot as plot
 from .library.run import Run as Run
 from .library.simulate import simulate as simulate
 from .library.sweep import sweep as sweep

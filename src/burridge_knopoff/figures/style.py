@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import partial, wraps
+from io import BytesIO
 from pathlib import Path
 from typing import Any, ParamSpec
 
@@ -27,6 +28,9 @@ Arguments = ParamSpec("Arguments")
 #: Width of two journal columns and of one, 17.8 and 8.6 cm, in inches.
 PAGE = 7.0
 COLUMN = 3.4
+
+# Dots per inch on a screen.
+SCREEN = 144
 
 # Colour of shaded cells.
 SHADE = "0.9"
@@ -70,6 +74,12 @@ class StyledFigure(Figure):
         # Ticks, among others, are created only now.
         with mpl.rc_context(STYLE):
             super().draw(renderer)
+
+    def _repr_png_(self) -> bytes:
+        """Return the picture as a notebook shows it, which shows none by itself until pyplot is imported."""
+        picture = BytesIO()
+        self.savefig(picture, format="png", dpi=SCREEN)
+        return picture.getvalue()
 
 
 def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
