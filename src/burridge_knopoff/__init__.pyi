@@ -34,6 +34,7 @@ from .model.chain import Chain as Chain
 from .model.initial import InitialState as InitialState
 from .model.model import ChainState as ChainState
 from .model.model import Model as Model
+from .model.physical_units import PhysicalUnits as PhysicalUnits
 from .motion.kind import MotionKind as MotionKind
 from .motion.modes import ModeAmplitudes as ModeAmplitudes
 from .motion.observables import SteadyMotion as SteadyMotion
