@@ -24,6 +24,7 @@ from .library.analyses import synchronized_orbit as synchronized_orbit
 from .library.analyses import transverse_exponent as transverse_exponent
 from .library.basin_map import basin_map as basin_map
 from .library.catalogue import Catalogue as Catalogue
+from .library.continue_attractors import continue_attractors as continue_attractors
 from .library.find_attractors import find_attractors as find_attractors
 from .library.open_study import open_study as open_study
 from .library.run import Run as Run
