@@ -26,6 +26,7 @@ from .library.basin_map import basin_map as basin_map
 from .library.catalogue import Catalogue as Catalogue
 from .library.continue_attractors import continue_attractors as continue_attractors
 from .library.find_attractors import find_attractors as find_attractors
+from .library.follow import follow as follow
 from .library.open_study import open_study as open_study
 from .library.run import Run as Run
 from .library.simulate import simulate as simulate
@@ -47,7 +48,6 @@ from .periodic_orbits.floquet import Multipliers as Multipliers
 from .periodic_orbits.floquet import multipliers as multipliers
 from .periodic_orbits.flow import OrbitError as OrbitError
 from .periodic_orbits.following import ContinuationSettings as ContinuationSettings
-from .periodic_orbits.following import follow as follow
 from .periodic_orbits.periodic import PeriodicOrbit as PeriodicOrbit
 from .periodic_orbits.pseudo_arclength import BranchOrbit as BranchOrbit
 from .periodic_orbits.symmetry import Symmetry as Symmetry

@@ -31,7 +31,7 @@ from burridge_knopoff.continuation.matching import DistanceMatcher, Matcher, out
 from burridge_knopoff.continuation.refinement import refine_searches
 from burridge_knopoff.continuation.settings import REFINEMENT, RefinementSettings
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.kind import CHAOS
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.running.processes import ParallelMap, parallel_map
@@ -91,7 +91,7 @@ def continue_attractors(
     refine: RefinementSettings = REFINEMENT,
     *,
     parameter: str = "a",
-    starts: Sequence[InitialState] = (),
+    starts: Sequence[InitialState | ChainState] = (),
     start: str = "moving",
     matcher: Matcher | None = None,
     processes: int = 1,
@@ -145,7 +145,7 @@ def continue_attractors(
     return Continuation(all_models, grid, attractors, lives, branch, side, upward, downward, samples, parameter)
 
 
-def _search(search: Search, starts: Sequence[InitialState], start: str) -> Search:
+def _search(search: Search, starts: Sequence[InitialState | ChainState], start: str) -> Search:
     """Find attractors from initial states."""
     search.find(search.starts(starts, start))
     return search

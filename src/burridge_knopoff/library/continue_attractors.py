@@ -10,10 +10,11 @@ import numpy as np
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.continuation import attractor_continuation
 from burridge_knopoff.continuation.settings import RefinementSettings
-from burridge_knopoff.library.coercion import GivenLaw, Initial, given_state
-from burridge_knopoff.library.keyword_settings import settings_of, show_settings
+from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings, takes_model
+from burridge_knopoff.library.model_forms import GivenLaw
 from burridge_knopoff.library.progress import Progress, progress_bar
-from burridge_knopoff.library.sweep import _grid
+from burridge_knopoff.library.state_forms import Initial, state_blocks, state_in
+from burridge_knopoff.library.sweep import parameter_grid
 from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     import xarray
 
 
+@takes_model
 @show_settings(SearchSettings)
 def continue_attractors(
     law: Model | GivenLaw,
@@ -38,6 +40,7 @@ def continue_attractors(
     starts: Sequence[Initial] = (),
     start: str = "moving",
     chain: Chain | None = None,
+    blocks: int | None = None,
     contact: str | None = None,
     cores: int | None = None,
     progress: Progress = False,
@@ -45,11 +48,11 @@ def continue_attractors(
 ) -> xarray.Dataset:
     """Return the attractors along a, or along another parameter, with their branches, basin fractions and changes.
 
-    law : a `Model` with its own chain, contact and values of all parameters; or a law in any form that `simulate` takes
+    law, chain, blocks, contact : see `simulate`
     a : friction parameters, shape (n,), or one number; by default that of a `Model` or a `Law`
-    by_name : other parameters as in `sweep`, of which one is a sequence if a is not; and settings of the search by name
+    by_name : other parameters as in `sweep`, one of them a sequence if a is not; and settings of the search by name
         (see `SearchSettings`)
-    settings, motion, starts, start : see `find_attractors`; chain, contact : see `simulate`
+    settings, motion, starts, start : see `find_attractors`
     refine : distance to which changes are located in the parameter; by default a tenth of the smallest step between the
         given values
     cores : number of simultaneous processes, by default the number of cores; results do not depend on it
@@ -73,21 +76,21 @@ def continue_attractors(
     >>> data.from_branch.values.tolist(), data.to_branch.values.tolist()
     ([0, 1, 0], [3, 1, 3])
     """
-    motion = instance_of(motion, MotionSettings, "motion")
+    named, parameters = divide(by_name, SearchSettings)
+    chosen = settings_of(SearchSettings, settings, named)
+    instance_of(motion, MotionSettings, "motion")
     OneOf(STARTS).form(start, "start")
-    given_starts = elements(starts)
-    if given_starts is None:
-        raise refusal("starts", starts, "a list of initial states")
-    states = [given_state(state) for state in given_starts]
-    names = fields_of(SearchSettings)
-    chosen = settings_of(SearchSettings, settings, {name: value for name, value in by_name.items() if name in names})
     cores = available_cores() if cores is None else Whole(1, 1024).form(cores, "cores")
-    parameters = {
-        name: value for name, value in (("a", a), *by_name.items()) if name not in names and value is not None
-    }
-    base, axes = _grid(law, parameters, states[0].blocks if states else 3, chain, contact)
+    given = elements(starts)
+    if given is None:
+        raise refusal("starts", starts, "a list of initial states")
+    shape = {"chain": chain, "blocks": blocks, "contact": contact}
+    shape["state_blocks"] = state_blocks(given[0], "starts[0]") if given else 3
+    parameters = {name: value for name, value in (("a", a), *parameters.items()) if value is not None}
+    base, axes = parameter_grid(law, parameters, shape, SearchSettings)
     if len(axes) != 1:
-        raise ValueError(f"a: got {len(axes)} parameters with several values, expected one")
+        raise ValueError(f"a: got {len(axes)} parameters with several values, expected one, a or another")
+    states = [state_in(base, state, f"starts[{number}]") for number, state in enumerate(given)]
     ((parameter, values),) = axes.items()
     values.sort()
     steps = np.diff(values)
