@@ -22,8 +22,9 @@ the `Slope` of their magnitudes. `event_multipliers` and `event_exponents` retur
 
 Attractors and basins: `find_attractors` returns the `Attractor`s of a model, each with its `SteadyMotion`, `MotionKind`
 and `Symmetry`; `SearchSettings` and `MotionSettings` control the search. `label_states` determines the attractor that
-each state reaches, and `basin_map` those of a plane of states. `edge_state` follows the boundary between two basins to
-its `EdgeState`, with `EdgeSettings`.
+each state reaches, and `basin_map` those of a plane of states. `continue_attractors` returns the attractors along a
+parameter, with their branches and basin fractions. `edge_state` follows the boundary between two basins to its
+`EdgeState`, with `EdgeSettings`.
 
 Periodic orbits: `limit_cycle`, `find_periodic_orbit` and `synchronized_orbit` return a `PeriodicOrbit` or raise
 `OrbitError`. `multipliers` returns its Floquet `Multipliers`.
@@ -33,9 +34,10 @@ Exponents: a `Trajectory` contains its Lyapunov exponents. `transverse_exponent`
 Locking: `block_frequencies` returns the frequency of each block, and `mode_amplitudes` the `ModeAmplitudes` of the
 chain's normal modes, which tell locked blocks from blocks that move in one mode.
 
-Bifurcations: `follow` continues a periodic orbit in any parameter, with `ContinuationSettings`, and returns its
-branch as `BranchOrbit`s. `locate_bifurcations` finds each `Bifurcation` on the branch and its `BifurcationKind`.
-`follow_bifurcation` continues a bifurcation in two parameters and returns a `BifurcationCurve`.
+Bifurcations: `follow` continues a periodic orbit, or that on which a motion settles, in any parameter, with
+`ContinuationSettings`, and returns its branch as `BranchOrbit`s. `locate_bifurcations` finds each `Bifurcation` on the
+branch and its `BifurcationKind`. `follow_bifurcation` continues a bifurcation in two parameters and returns a
+`BifurcationCurve`.
 """
 
 import lazy_loader

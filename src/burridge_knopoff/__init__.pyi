@@ -24,7 +24,9 @@ from .library.analyses import synchronized_orbit as synchronized_orbit
 from .library.analyses import transverse_exponent as transverse_exponent
 from .library.basin_map import basin_map as basin_map
 from .library.catalogue import Catalogue as Catalogue
+from .library.continue_attractors import continue_attractors as continue_attractors
 from .library.find_attractors import find_attractors as find_attractors
+from .library.follow import follow as follow
 from .library.open_study import open_study as open_study
 from .library.plot import plot as plot
 from .library.run import Run as Run
@@ -48,7 +50,6 @@ from .periodic_orbits.floquet import Multipliers as Multipliers
 from .periodic_orbits.floquet import multipliers as multipliers
 from .periodic_orbits.flow import OrbitError as OrbitError
 from .periodic_orbits.following import ContinuationSettings as ContinuationSettings
-from .periodic_orbits.following import follow as follow
 from .periodic_orbits.periodic import PeriodicOrbit as PeriodicOrbit
 from .periodic_orbits.pseudo_arclength import BranchOrbit as BranchOrbit
 from .periodic_orbits.symmetry import Symmetry as Symmetry

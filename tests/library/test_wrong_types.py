@@ -75,6 +75,14 @@ def correct_calls():
         "event_exponents": {"model": DROPPING, "state": REST, "end": 90.0, "begin": 10.0, "count": 1},
         "event_multipliers": {"model": DROPPING, "state": REST, "end": 10.3},
         "find_attractors": {"law": "linearized", "a": 0.08, "settings": SEARCH, "starts": ["plus"]},
+        "continue_attractors": {
+            "law": "linearized",
+            "a": [0.08],
+            "settings": SEARCH,
+            "refine": 1.0,
+            "starts": ["plus"],
+            "cores": 1,
+        },
         "find_periodic_orbit": {
             "model": MODEL,
             "guess": orbit.reference,
