@@ -24,7 +24,7 @@ def test_every_name_is_documented(name):
     assert not text.startswith(f"{name}(")
     assert f"`{name}`" in burridge_knopoff.__doc__
     if inspect.isfunction(public):
-        code = public.__code__
+        code = inspect.unwrap(public).__code__
         described = set(re.findall(r"\w+", text.partition(">>>")[0]))
         flags = (code.co_flags & inspect.CO_VARARGS > 0) + (code.co_flags & inspect.CO_VARKEYWORDS > 0)
         assert set(code.co_varnames[: code.co_argcount + code.co_kwonlyargcount + flags]) <= described

@@ -186,7 +186,7 @@ def test_multipliers_begin_at_rest(loading, share):
     ended = events.time + (events.duration if loading == "steady" else 0.0)
     end = 0.5 * (ended[2] + events.time[3])
     if share < -1.0:
-        with refused("start"):
+        with refused("state"):
             event_multipliers(model, start, end, loading=loading)
         return
     multipliers = event_multipliers(model, start, end, loading=loading)
@@ -235,7 +235,7 @@ def test_multipliers_count_the_dashpots_to_the_driver(share, contact, loading, i
     gap = np.flatnonzero(ended[:-1] < events.time[1:])[2]
     end = 0.5 * (ended[gap] + events.time[gap + 1])
     if is_refused:
-        with refused("start"):
+        with refused("state"):
             event_multipliers(model, start, end, loading=loading)
     else:
         assert np.isfinite(event_multipliers(model, start, end, loading=loading)).all()

@@ -29,7 +29,7 @@ def noise(size: int) -> bytes:
 
 
 def noise_inside(content: bytes) -> bytes:
-    """Return the content with every 500th byte of its second half changed: some of them lie in space that HDF5 leaves."""
+    """Return the content with every 500th byte of its second half changed: HDF5 leaves some of them unused."""
     changed = bytearray(content)
     for place in range(len(content) // 2, len(content), 500):
         changed[place] ^= 0xFF

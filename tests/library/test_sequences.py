@@ -98,6 +98,7 @@ THINGS = {
 }
 #: Those that are slow, or need more of their value: only the refusal is tried.
 REFUSALS = {
+    "sweep.law": lambda x: sweep(x, 0.08, **QUICK),
     "basin_map.initial": lambda x: basin_map("linearized", 0.08, x),
     "basin_map.first_position": lambda x: basin_map("linearized", 0.08, first_position=x),
     "basin_map.last_position": lambda x: basin_map("linearized", 0.08, last_position=x),

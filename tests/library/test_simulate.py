@@ -1,13 +1,22 @@
 """One run in one call: all forms of initial states, settings by name, and refused arguments."""
 
 import inspect
-import typing
 
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, SearchSettings, Settings, basin_map, law_of, simulate
-from burridge_knopoff.library.keyword_settings import RunSettings, SearchOptions
+from burridge_knopoff import (
+    Chain,
+    InitialState,
+    Model,
+    SearchSettings,
+    Settings,
+    basin_map,
+    find_attractors,
+    law_of,
+    simulate,
+    sweep,
+)
 from burridge_knopoff.model.fields import fields_of
 from tests.refused import refused
 
@@ -74,12 +83,12 @@ def test_settings_may_be_given_in_both_ways():
 
 
 @pytest.mark.parametrize(
-    "options",
-    [{"v": 0.2}, {"v": 0.1}, {"chain": Chain(3)}, {"contact": "one_sided"}, {"contact": "symmetric"}, {"a": 0.1}],
+    ("name", "options"),
+    [("chain", {"chain": Chain(3)}), ("contact", {"contact": "one_sided"}), ("blocks", {"blocks": 3})],
 )
-def test_arguments_that_a_model_already_has_are_refused(options):
-    """They would have no effect, even if the given value is the default of a law."""
-    with refused("a, chain, v, contact"):
+def test_what_a_model_already_has_is_refused(name, options):
+    """It would have no effect, even if it is what the model has."""
+    with refused(name):
         simulate(MODEL, initial="plus", **options)
 
 
@@ -89,13 +98,11 @@ def test_other_objects_in_place_of_settings_are_refused():
 
 
 @pytest.mark.parametrize(
-    ("function", "named", "kind", "apart"),
-    [(simulate, RunSettings, Settings, set()), (basin_map, SearchOptions, SearchSettings, {"samples", "seed"})],
+    ("function", "kind"),
+    [(simulate, Settings), (sweep, Settings), (basin_map, SearchSettings), (find_attractors, SearchSettings)],
 )
-def test_names_that_editors_and_notebooks_complete_are_those_of_the_settings(function, named, kind, apart):
-    types = typing.get_type_hints(named)
-    assert types == {name: hint for name, hint in typing.get_type_hints(kind).items() if name not in apart}
-    parameters = inspect.signature(function).parameters
-    fields = fields_of(kind)
+def test_names_that_notebooks_complete_are_those_of_the_settings(function, kind):
+    parameters, fields = inspect.signature(function).parameters, fields_of(kind)
     assert set(fields) <= set(parameters)
-    assert {name: parameters[name].default for name in types} == {name: fields[name].default for name in types}
+    own = {"samples"} if function is basin_map else set()
+    assert all(parameters[name].default == field.default for name, field in fields.items() if name not in own)

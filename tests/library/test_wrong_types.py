@@ -71,8 +71,8 @@ def correct_calls():
             "settings": EdgeSettings(duration=3000, samples=20),
             "time_limit": 20_000,
         },
-        "event_exponents": {"model": DROPPING, "start": REST, "end": 90.0, "begin": 10.0, "count": 1},
-        "event_multipliers": {"model": DROPPING, "start": REST, "end": 10.3},
+        "event_exponents": {"model": DROPPING, "state": REST, "end": 90.0, "begin": 10.0, "count": 1},
+        "event_multipliers": {"model": DROPPING, "state": REST, "end": 10.3},
         "find_attractors": {"law": "linearized", "a": 0.08, "settings": SEARCH, "starts": ["plus"]},
         "find_periodic_orbit": {
             "model": MODEL,
@@ -97,7 +97,7 @@ def correct_calls():
         "open_study": {"results": "results/nothing"},
         "record_events": {
             "model": DROPPING,
-            "start": REST,
+            "state": REST,
             "end": 9.0,
             "begin": 0.0,
             "profiles": False,

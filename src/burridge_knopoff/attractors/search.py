@@ -37,7 +37,7 @@ def find_attractors(
     settings: SearchSettings = SEARCH,
     motion: MotionSettings = MOTION,
     *,
-    starts: Sequence[InitialState] = (),
+    starts: Sequence[InitialState | ChainState] = (),
     start: str = "moving",
 ) -> tuple[list[Attractor], np.ndarray]:
     """Return the attractors of a model, and the index among them that each initial state reaches.
@@ -151,12 +151,14 @@ class Search(Convergence):
         size = SYMMETRY_PUSH * self.resolution
         return [perturb(attractor.motion.state(), size, generator) for attractor in attractors]
 
-    def starts(self, initial: Sequence[InitialState], start: str) -> list[ChainState]:
+    def starts(self, initial: Sequence[InitialState | ChainState], start: str) -> list[ChainState]:
         """Return the states at τ = 0 of the drawn initial states, followed by the given ones."""
         settings = self.settings
         box = settings.position, settings.velocity
         drawn = sample_initial_states(self.model.blocks, settings.samples, *box, settings.seed)
-        return [self.model.begin(state, start) for state in (*drawn, *initial)]
+        return [
+            state if isinstance(state, ChainState) else self.model.begin(state, start) for state in (*drawn, *initial)
+        ]
 
     def labels(self, starts: Sequence[ChainState], check: bool = True) -> np.ndarray:
         """Return the index of the attractor that each state reaches, −1 for none, after `find`."""

@@ -87,7 +87,7 @@ class SlipEvents:
 
 def record_events(
     model: Model,
-    start: ChainState,
+    state: ChainState,
     end: float,
     *,
     begin: float | None = None,
@@ -98,7 +98,7 @@ def record_events(
 ) -> SlipEvents:
     """Return the slip events of a run that start after `begin` and end before the end of the run.
 
-    start, end : state at the start of the run, and τ of its end
+    state, end : state at the start of the run, and τ of its end
     begin : earlier events are omitted, by default none; they still count for the intervals
     profiles : whether the slip of every block is stored
     loading : steady: the driver moves at velocity v | quasistatic: the driver stops while any block slips; when all
@@ -111,17 +111,17 @@ def record_events(
 
     Blocks that slip at the start of the run belong to no event until they have stopped.
 
-    Raises ValueError, one line, for an end that is not after `start` and `begin`; for an unknown solver; for a step
+    Raises ValueError, one line, for an end that is not after `state` and `begin`; for an unknown solver; for a step
     that is not above 0, is longer than a tenth of the shortest period of the chain, or needs too many steps; for map if
     the model has no closed form; for more than MOST_EVENTS events; and for quasi-static loading if friction does not
     drop at the start of a slip.
     """
     instance_of(model, Model, "model")
-    instance_of(start, ChainState, "start")
+    instance_of(state, ChainState, "state")
     begin = TIMES.least if begin is None else TIMES.form(begin, "begin")
     end = TIMES.form(end, "end")
-    if end <= start.time:
-        raise refusal("end", end, f"a time after the start ({start.time:g})")
+    if end <= state.time:
+        raise refusal("end", end, f"a time after the start ({state.time:g})")
     if end <= begin:
         raise refusal("end", end, f"a time after begin ({begin:g})")
     profiles = TrueOrFalse().form(profiles, "profiles")
@@ -129,11 +129,11 @@ def record_events(
     step = TIME.form(step, "step")
     stepping = solver in FIXED_STEP_SOLVERS
     if stepping:
-        check_step(step, LONGEST_STEP, end - start.time, model.chain)
+        check_step(step, LONGEST_STEP, end - state.time, model.chain)
     observer = new_observer(model, [end, end], section_only=True) if stepping else None
     catalogue = Catalogue(model.blocks, begin, profiles, MOST_EVENTS)
     runner = Runner(model, solver, step=step, observer=observer, catalogue=catalogue, loading=loading)
-    runner.begin(start)
+    runner.begin(state)
     status = runner.run(None if stepping else end)
     table = catalogue.take()
     order = np.lexsort((table["slip_time"], table["time"]))

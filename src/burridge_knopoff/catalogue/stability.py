@@ -55,7 +55,7 @@ class EventExponents:
 
 def event_exponents(
     model: Model,
-    start: ChainState,
+    state: ChainState,
     end: float,
     *,
     begin: float | None = None,
@@ -64,7 +64,7 @@ def event_exponents(
 ) -> EventExponents:
     """Return the largest Lyapunov exponents per slip event, between two times of the loading clock.
 
-    model, start, end, begin, loading : see `record_events`. `begin` is by default the time of `start`; perturbations
+    model, state, end, begin, loading : see `record_events`. `begin` is by default the time of `state`; perturbations
         start halfway between the two times and first align with the directions of fastest growth
     count : number of exponents
 
@@ -90,21 +90,21 @@ def event_exponents(
     True
     """
     instance_of(model, Model, "model")
-    instance_of(start, ChainState, "start")
-    check_state(model, start)
-    end, begin = TIMES.form(end, "end"), TIMES.form(start.time if begin is None else begin, "begin")
+    instance_of(state, ChainState, "state")
+    check_state(model, state)
+    end, begin = TIMES.form(end, "end"), TIMES.form(state.time if begin is None else begin, "begin")
     count = Whole(1, 2 * model.blocks).form(count, "count")
-    if begin < start.time:
-        raise refusal("begin", begin, f"a time not before the start ({start.time:g})")
+    if begin < state.time:
+        raise refusal("begin", begin, f"a time not before the start ({state.time:g})")
     if end <= begin:
         raise refusal("end", end, f"a time after begin ({begin:g})")
     edges = np.linspace(begin, end, BATCHES + 1)
-    rests = _rest_times(model, start, edges) if loading == "steady" else edges[:0]
+    rests = _rest_times(model, state, edges) if loading == "steady" else edges[:0]
     edges = rests if len(rests) > 1 else edges
     catalogue = Catalogue(model.blocks, edges[0], False, MOST_EVENTS)
-    exponents = Exponents(model.blocks, count, 0.5 * (start.time + begin), edges, at_rest=True)
+    exponents = Exponents(model.blocks, count, 0.5 * (state.time + begin), edges, at_rest=True)
     runner = Runner(model, exponents=exponents, catalogue=catalogue, loading=loading, groups=False)
-    runner.begin(start)
+    runner.begin(state)
     status = runner.run(edges[-1])
     _check_derivative(runner)
     time, growth = catalogue.take()["time"], exponents.results()["growth"]
@@ -124,7 +124,7 @@ def event_exponents(
 
 def _check_derivative(runner: Runner) -> None:
     if reason := missing_derivative(runner):
-        raise ValueError(f"start: {reason}, expected a state from which perturbations grow linearly")
+        raise ValueError(f"state: {reason}, expected a state from which perturbations grow linearly")
 
 
 def _rest_times(model: Model, start: ChainState, edges: np.ndarray) -> np.ndarray:
@@ -146,10 +146,10 @@ def _rest_times(model: Model, start: ChainState, edges: np.ndarray) -> np.ndarra
     return np.unique(middle[np.abs(middle - edges[:, None]).argmin(axis=1)]) if len(middle) else middle
 
 
-def event_multipliers(model: Model, start: ChainState, end: float, *, loading: str = "quasistatic") -> np.ndarray:
+def event_multipliers(model: Model, state: ChainState, end: float, *, loading: str = "quasistatic") -> np.ndarray:
     """Return the multipliers of the events between two times of rest, in descending order of modulus, shape (blocks,).
 
-    model, start, end : a state in which all blocks stick, none beyond its threshold, and τ of another such state; for
+    model, state, end : a state in which all blocks stick, none beyond its threshold, and τ of another such state; for
         the multipliers of periodic motion, one period later
     loading : see `record_events`
 
@@ -166,20 +166,20 @@ def event_multipliers(model: Model, start: ChainState, end: float, *, loading: s
     [0.0]
     """
     instance_of(model, Model, "model")
-    instance_of(start, ChainState, "start")
+    instance_of(state, ChainState, "state")
     end = TIMES.form(end, "end")
-    if end <= start.time:
-        raise refusal("end", end, f"a time after the start ({start.time:g})")
+    if end <= state.time:
+        raise refusal("end", end, f"a time after the start ({state.time:g})")
     blocks = model.blocks
     perturbations = np.vstack([np.eye(blocks), np.zeros((blocks, blocks))])
     runner = Runner(model, perturbations=perturbations, loading=loading, groups=False)
-    runner.begin(start)
+    runner.begin(state)
     # Stuck blocks bear the dashpots to the driver, which moves under steady loading only.
     driver = model.v if loading == "steady" else 0.0
-    force = model.chain.force(start.position + model.sliding_offset) + model.chain.driver_damping * driver
+    force = model.chain.force(state.position + model.sliding_offset) + model.chain.driver_damping * driver
     pulled = np.abs(force) if model.contact == "symmetric" else force
-    if not start.stuck.all() or (pulled > model.chain.thresholds * (1.0 + THRESHOLD_TOLERANCE)).any():
-        raise refusal("start", start, "a state in which all blocks stick, none beyond its threshold")
+    if not state.stuck.all() or (pulled > model.chain.thresholds * (1.0 + THRESHOLD_TOLERANCE)).any():
+        raise refusal("state", state, "a state in which all blocks stick, none beyond its threshold")
     if ended := early_end(runner.run(end), runner.clock):
         raise refusal("end", end, f"an earlier time: {ended}")
     if not runner.state().stuck.all():

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from burridge_knopoff.laws import LAWS, Law, law_of, unknown_law
-from burridge_knopoff.library.coercion import OWN
+from burridge_knopoff.library.state_forms import OWN
 from burridge_knopoff.messages import command, format_value
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.fields import FOLLOWS, REQUIRED, fields_of

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, Any
 
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.basins.settings import BasinSettings
-from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state
-from burridge_knopoff.library.keyword_settings import SearchOptions, settings_of, show_settings
+from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings, takes_model
+from burridge_knopoff.library.model_forms import GivenLaw, model_of
+from burridge_knopoff.library.state_forms import Initial, initial_numbers, state_blocks
 from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.sampling import POSITIONS
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
     import xarray
 
 
+@takes_model
 @show_settings(SearchSettings)
 def basin_map(
     law: Model | GivenLaw,
@@ -28,6 +31,7 @@ def basin_map(
     first_position: Sequence[float] = POSITIONS,
     last_position: Sequence[float] = POSITIONS,
     chain: Chain | None = None,
+    blocks: int | None = None,
     v: float | None = None,
     contact: str | None = None,
     start: str = "moving",
@@ -35,20 +39,20 @@ def basin_map(
     seed: int = 1,
     threads: int = 1,
     motion: MotionSettings = MOTION,
-    **search: Unpack[SearchOptions],
+    **by_name: Any,
 ) -> tuple[xarray.Dataset, xarray.Dataset]:
     """Return a basin map of one model and its attractors, in the form of `basins.nc` and `attractors.nc`.
 
-    law : a Model, with its own a, chain, v and contact; or a law at this a, in any form that `simulate` takes
+    law, a, chain, blocks, v, contact : as for `simulate`
     initial : the positions and velocities except U_1(0) and U_N(0), in any form that `simulate` takes; minus has three
         blocks
-    chain : by default the paper's springs, with as many blocks as the initial state; v, contact : as for `simulate`
     start : moving or tested, see `Model.begin`
     pixels : along each axis; first_position, last_position : ranges [low, high] of U_1(0) and U_N(0)
     samples, seed : initial states of the search for attractors; an attractor that none of them reaches is not found,
         and its basin is undetermined (−1)
     threads : number of threads; the map does not depend on it
-    search : other settings of `SearchSettings` by name; motion : how kinds of motion are classified
+    by_name : other settings of `SearchSettings`, and parameters of the model as for `simulate`
+    motion : how kinds of motion are classified
 
     The map `branch` of the first Dataset has shape (1, pixels, pixels), with U_N(0) along the rows. The uncertainty
     exponent is NaN, since no pairs of states are followed. Raises ValueError, one line, for a wrong argument, and if no
@@ -64,8 +68,18 @@ def basin_map(
     from burridge_knopoff.summaries import basins as basin_summary
     from burridge_knopoff.summaries.multistability import coexisting_attractors
 
-    state = given_state(initial)
-    model = given_model(law, a, state.blocks, chain, v, contact)
+    search, parameters = divide(by_name, SearchSettings)
+    model = model_of(
+        law,
+        a,
+        chain=chain,
+        blocks=blocks,
+        contact=contact,
+        state_blocks=state_blocks(initial),
+        parameters={"v": v, **parameters},
+        settings=fields_of(SearchSettings),
+    )
+    state = initial_numbers(model, initial)
     # The map itself shows the basin fractions.
     options = {"samples": samples, "seed": seed, "fraction_width": 0.1, **search}
     settings = settings_of(SearchSettings, None, options)

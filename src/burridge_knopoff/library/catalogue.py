@@ -126,7 +126,7 @@ class Catalogue(SlipEvents):
 
 def record_events(
     model: Model,
-    start: ChainState,
+    state: ChainState,
     end: float,
     *,
     begin: float | None = None,
@@ -137,7 +137,7 @@ def record_events(
 ) -> Catalogue:
     """Return the catalogue of the slip events of a run that begin after a given time and end before its end.
 
-    model : the model; start : its initial state, from `Model.begin` or the `final` of another run
+    model : the model; state : its initial state, from `Model.begin` or the `final` of another run
     end : τ at the end of the run
     begin : events that begin earlier are left out, but count in the intervals; by default none is left out
     profiles : keep the slip of every block of each event
@@ -157,7 +157,7 @@ def record_events(
     (14, 1)
     """
     record = events.record_events(
-        model, start, end, begin=begin, profiles=profiles, loading=loading, solver=solver, step=step
+        model, state, end, begin=begin, profiles=profiles, loading=loading, solver=solver, step=step
     )
-    begin = start.time if begin is None else max(begin, start.time)
+    begin = state.time if begin is None else max(begin, state.time)
     return Catalogue(**vars(record), model=model, begin_time=begin, end_time=end, loading=loading, solver=solver)

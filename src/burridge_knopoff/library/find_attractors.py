@@ -3,42 +3,46 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Unpack
+from typing import Any
 
 import numpy as np
 
 from burridge_knopoff.attractors import search as attractors
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.settings import SearchSettings
-from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state
-from burridge_knopoff.library.keyword_settings import AttractorOptions, settings_of, show_settings
+from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings, takes_model
+from burridge_knopoff.library.model_forms import GivenLaw, model_of
+from burridge_knopoff.library.state_forms import Initial, state_blocks, state_in
 from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import STARTS, Model
 from burridge_knopoff.model.ranges import OneOf
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.values import elements, instance_of
 
 
+@takes_model
 @show_settings(SearchSettings)
 def find_attractors(
     law: Model | GivenLaw,
-    a: Any = None,
+    a: float | None = None,
     settings: SearchSettings | None = None,
     motion: MotionSettings = MOTION,
     *,
     starts: Sequence[Initial] = (),
     start: str = "moving",
     chain: Chain | None = None,
+    blocks: int | None = None,
     v: float | None = None,
     contact: str | None = None,
-    **by_name: Unpack[AttractorOptions],
+    **by_name: Any,
 ) -> tuple[list[Attractor], np.ndarray]:
     """Return the attractors of a model, and the index of the attractor that each initial state reaches.
 
-    law, a, chain, v, contact : as for `simulate`; a `Model` takes the place of law and a, and settings may follow it
+    law, a, chain, blocks, v, contact : as for `simulate`
     settings : of the search, with the number of sampled states; by_name : some or all of them by name (see
-        `SearchSettings`)
+        `SearchSettings`), and parameters of the model as for `simulate`
     motion : how kinds of motion are classified
     starts : initial states in addition to the sampled ones, each in any form that `simulate` takes
     start : moving or tested, see `Model.begin`
@@ -61,19 +65,26 @@ def find_attractors(
     >>> labels.shape, labels[-1].item()
     ((13,), 1)
     """
-    if isinstance(law, Model) and isinstance(a, SearchSettings):
-        if settings is not None:
-            raise ValueError("settings: got two, expected one")
-        a, settings = None, a
+    named, parameters = divide(by_name, SearchSettings)
     instance_of(motion, MotionSettings, "motion")
     OneOf(STARTS).form(start, "start")
-    given_starts = elements(starts)
-    if given_starts is None:
+    states = elements(starts)
+    if states is None:
         raise refusal("starts", starts, "a list of initial states")
-    states = [given_state(state) for state in given_starts]
-    # Without states and chain, the paper's chain.
-    blocks = states[0].blocks if states else 3
-    model = given_model(law, a, blocks, chain, v, contact)
+    model = model_of(
+        law,
+        a,
+        chain=chain,
+        blocks=blocks,
+        contact=contact,
+        state_blocks=state_blocks(states[0], "starts[0]") if states else 3,
+        parameters={"v": v, **parameters},
+        settings=fields_of(SearchSettings),
+    )
     return attractors.find_attractors(
-        model, settings_of(SearchSettings, settings, by_name), motion, starts=states, start=start
+        model,
+        settings_of(SearchSettings, settings, named),
+        motion,
+        starts=[state_in(model, state, f"starts[{number}]") for number, state in enumerate(states)],
+        start=start,
     )

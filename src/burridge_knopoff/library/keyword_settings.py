@@ -1,59 +1,71 @@
-"""Settings by name, for type checkers, editors and completion in notebooks."""
+"""Arguments of the library: settings by name, shown for completion in notebooks, and where a may be left out."""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any, TypedDict, TypeVar
+from functools import wraps
+from typing import Any, TypeVar
 
+from burridge_knopoff.laws import Law
 from burridge_knopoff.messages import full_key, suggestion
 from burridge_knopoff.model.fields import fields_of
-from burridge_knopoff.running.section import Section
-from burridge_knopoff.values import instance_of
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.values import elements, instance_of, is_sequence, real_number
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 _T = TypeVar("_T")
 
 
-class RunSettings(TypedDict, total=False):
-    """The settings of a run by name: the fields of `Settings`, which has their ranges, defaults and descriptions."""
+def takes_model(function: _F) -> _F:
+    """Return a function of law and a that takes a model as well, also by its name, and does without a.
 
-    start: str
-    solver: str
-    step: float
-    transient: float
-    window: float
-    batches: int
-    sampling: float
-    trajectory: float
-    trajectory_sampling: float
-    events: str
-    event_window: float
-    section: Section
-    lyapunov_exponents: int
-    lyapunov_alignment: float
+    After a `Model` or a `Law`, which have their own a, a state or settings may follow at once. A law that has a
+    parameter of the same name as an argument that is given is refused: either may be meant.
+    """
+    names = inspect.signature(function).parameters
 
+    @wraps(function)
+    def call(*arguments: Any, **by_name: Any) -> Any:
+        if "model" in by_name:
+            by_name["law"] = by_name.pop("model")
+        for law in arguments[:1] or [by_name.get("law")]:
+            for name in _numbers(law) & by_name.keys() & names.keys():
+                raise ValueError(
+                    f"{name}: got a parameter of the law with the name of a setting, expected another name"
+                )
+        if len(arguments) > 1 and not _can_be_a(arguments[1], isinstance(arguments[0], Model | Law)):
+            arguments = (arguments[0], None, *arguments[1:])
+        return function(*arguments, **by_name)
 
-class SearchOptions(TypedDict, total=False):
-    """Settings of a search by name: fields of `SearchSettings`, with their ranges, defaults and descriptions."""
-
-    fraction_width: float
-    position: Sequence[float]
-    velocity: Sequence[float]
-    transient: float
-    window: float
-    time_limit: float
-    resolution: float
-    perturbations: int
-    lifetime: float
+    return call  # type: ignore[return-value]
 
 
-class AttractorOptions(SearchOptions, total=False):
-    """All settings of a search by name: also the number of sampled initial states, and their seed."""
+def _numbers(law: Any) -> set[str]:
+    """Return the names of the parameters of a law or of a list of laws, in any form."""
+    if is_sequence(law):
+        return {name for item in law for name in _numbers(item)}
+    law = law.law if isinstance(law, Model) else law
+    return {*(law if isinstance(law, Mapping) else law.parameters if isinstance(law, Law) else ())}
 
-    samples: int
-    seed: int
+
+def _can_be_a(value: Any, is_optional: bool) -> bool:
+    """Return whether an argument is meant for a: None, a number, or a sequence that begins with a number.
+
+    is_optional : whether a may be missing; an empty sequence is then something else
+    """
+    items = elements(value)
+    if items is None:
+        return value is None or real_number(value) == real_number(value) or not is_optional
+    return real_number(items[0]) == real_number(items[0]) if items else not is_optional
+
+
+def divide(by_name: Mapping[str, Any], kind: type) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the settings of a class among arguments by name, and the other arguments."""
+    names = fields_of(kind)
+    settings = {name: value for name, value in by_name.items() if name in names}
+    return settings, {name: value for name, value in by_name.items() if name not in names}
 
 
 def show_settings(kind: type) -> Callable[[_F], _F]:

@@ -6,8 +6,11 @@ from typing import TYPE_CHECKING
 
 from burridge_knopoff.dataset.point import to_dataset
 from burridge_knopoff.library.catalogue import Catalogue, record_events
+from burridge_knopoff.motion.kind import Motion, MotionKind, motion_of_run
+from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.running.settings import DURATION, TIME
 from burridge_knopoff.running.trajectory import Trajectory
+from burridge_knopoff.values import instance_of
 
 if TYPE_CHECKING:
     import xarray
@@ -21,9 +24,32 @@ class Run(Trajectory):
     >>> run = simulate("linearized", 0.08, "plus", transient=0, window=20)
     >>> run.to_dataset().velocity.dims
     ('trajectory_time', 'block')
+    >>> simulate("linearized", 0.08, "plus").motion().kind.words
+    'periodic'
     >>> simulate("linearized", 0.1, transient=100, window=20).catalogue(100)
     <Catalogue of 17 slip events of 3 blocks, linearized law, τ = 120 to 220, completed>
     """
+
+    @property
+    def kind(self) -> MotionKind:
+        """Kind of motion in the window, with the thresholds of the default study."""
+        return self.motion().kind
+
+    @property
+    def period(self) -> float:
+        """Time after which the motion repeats, infinite or NaN if it does not; see `Motion`."""
+        return self.motion().period
+
+    def motion(self, settings: MotionSettings = MOTION) -> Motion:
+        """Return the kind of motion in the window and its period, as the run alone shows them; see `Motion`.
+
+        settings : thresholds, at v = 0.1; they are scaled to the v of the run
+
+        A study compares the run with the attractors at its a as well, which are followed for longer.
+        """
+        instance_of(settings, MotionSettings, "settings")
+        scaled = settings.scaled_to_velocity(self.model.v)
+        return motion_of_run(vars(self), self.model.chain.is_mirror_symmetric, scaled)
 
     def plot(self) -> Figure:
         """Return a figure of J(τ) and of the velocities U_i'(τ) in the last part of the run."""

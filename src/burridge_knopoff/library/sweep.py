@@ -1,9 +1,10 @@
-"""Runs over one or several parameters, on several cores."""
+"""Runs over laws, initial states and parameters, on several cores."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import chain as chained
 from itertools import product
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -11,28 +12,33 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from burridge_knopoff.dataset.point import POINT_VARIABLES, point_attributes, point_values
-from burridge_knopoff.dataset.variables import Variable
-from burridge_knopoff.laws import Law
-from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state, warn_of_cost
-from burridge_knopoff.library.keyword_settings import settings_of, show_settings
+from burridge_knopoff.dataset.variables import PERIOD, Variable, flag
+from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings, takes_model
+from burridge_knopoff.library.model_forms import GivenLaw, model_of
+from burridge_knopoff.library.state_forms import (
+    Initial,
+    final_state,
+    is_list_of_states,
+    named_states,
+    state_blocks,
+    warn_of_cost,
+)
 from burridge_knopoff.messages import format_value, full_key, refusal
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import Model
-from burridge_knopoff.model.parameters import (
-    format_parameter_names,
-    parse_indexed_name,
-    plain_name,
-    remarks_on_states,
-)
+from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.model.parameters import plain_name, remarks_on_states
 from burridge_knopoff.model.ranges import Whole
+from burridge_knopoff.motion.kind import MotionKind, motion_of_run
+from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.running.cores import available_cores
-from burridge_knopoff.running.runner import LOCKSTEP_RUNS, run_together
+from burridge_knopoff.running.runner import LOCKSTEP_RUNS, check_state, run_together
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import prepare
 from burridge_knopoff.running.threads import map_in_threads
-from burridge_knopoff.values import elements, is_sequence
+from burridge_knopoff.running.trajectory import Trajectory
+from burridge_knopoff.values import elements, instance_of, is_sequence
 
 if TYPE_CHECKING:
     import xarray
@@ -42,36 +48,65 @@ _T = TypeVar("_T")
 #: Dimensions of the same size in every run, and the variables of a point over no others.
 _COMMON_DIMENSIONS = {"batch", "block", "exponent", "level"}
 _COMMON = {name: item for name, item in POINT_VARIABLES.items() if set(item.dimensions) <= _COMMON_DIMENSIONS}
+_MOTION = {
+    "kind": Variable(
+        (), "i1", "kind of motion", flag("i1", MotionKind) | {"comment": "the kind that the run alone shows"}
+    ),
+    "period": Variable((), "f8", *PERIOD),
+}
+_COORDINATES = {
+    "law": Variable((), "O", "friction law"),
+    "initial": Variable((), "O", "initial state"),
+    "a": POINT_VARIABLES["a"],
+    "v": POINT_VARIABLES["v"],
+}
 
 
+@dataclass(frozen=True, eq=False)
+class _Point:
+    """A point of the grid: the coordinates that vary, the model, and the state at which its run begins."""
+
+    place: Mapping[str, Any]
+    model: Model
+    state: InitialState | ChainState
+
+
+@takes_model
 @show_settings(Settings)
 def sweep(
-    law: Model | GivenLaw,
+    law: Model | GivenLaw | Sequence[GivenLaw],
     a: float | Sequence[float] | np.ndarray | None = None,
-    initial: Initial = "minus",
+    initial: Initial | Sequence[Initial] = "minus",
     settings: Settings | None = None,
     *,
+    motion: MotionSettings | None = MOTION,
     chain: Chain | None = None,
+    blocks: int | None = None,
     contact: str | None = None,
     cores: int | None = None,
     **by_name: Any,
 ) -> xarray.Dataset:
-    """Run a simulation at each of several a, or at each point of a grid over any parameters of the model.
+    """Run a simulation at each of several a, or at each point of a grid over laws, initial states and any parameters.
 
-    law : a `Model` with its own chain, contact and values of all parameters; or a law in any form that `simulate` takes
+    law : a `Model` with its own chain, contact and values of all parameters; a law in any form that `simulate` takes;
+        or a list of laws
     a : friction parameters, shape (n,), or one number; by default that of a `Model` or a `Law`
+    initial : a state in any form that `simulate` takes, or a list of states; in a list, numbers have a name: `{"name":
+        …, "position": …, "velocity": …}` or an `InitialState`
     by_name : other parameters, v, those of the chain such as coupling, or of one block or spring such as `mass[3]`, and
         the parameters of the law such as sigma, each one number or a sequence; and settings of the run by name
-    initial, settings, chain, contact : see `simulate`
+    motion : thresholds of the kinds of motion, for v = 0.1; None leaves out `kind` and `period`
+    settings, chain, blocks, contact : see `simulate`
     cores : number of simultaneous runs, by default the number of cores; results do not depend on it
 
-    Each parameter given as a sequence is a dimension of the Dataset: first a, then the others in the order given; that
-    of `mass[3]` is `mass_3`. The variables are those of a point file (docs/data.md) with one value per run, batch,
-    block, exponent or level of J, among them `mean_distance`, `mean_distance_error`, `lyapunov_exponent` and `status`,
-    which is 0 for a completed run. The series of a run are left out, since `simulate` returns them: the variables over
-    `sample`, `earlier_event`, `event`, `crossing` and `trajectory_time`. The states `minus` and `plus` follow v; other
-    numbers are the same at every point, and so are those of every state if springs, masses or thresholds vary: the
-    attribute `remark` then says so. Raises ValueError, one line, for a wrong argument; an error at one point names it.
+    Each list is a dimension of the Dataset: law, initial, a, then the other parameters in the order given; that of
+    `mass[3]` is `mass_3`. The variables are those of a point file (docs/data.md) with one value per run, batch, block,
+    exponent or level of J, among them `mean_distance`, `mean_distance_error`, `lyapunov_exponent` and `status`, which
+    is 0 for a completed run; and the `kind` of motion in the window with its `period` (see `MotionKind` and
+    `decode_flags`). The series of a run are left out, since `simulate` returns them: the variables over `sample`,
+    `earlier_event`, `event`, `crossing` and `trajectory_time`. The states `minus` and `plus` follow v; other numbers
+    are the same at every point, and so are those of every state if springs, masses or thresholds vary: the attribute
+    `remark` then says so. Raises ValueError, one line, for a wrong argument; an error at one point names it.
 
     >>> from burridge_knopoff import sweep
     >>> runs = sweep("nonlinear", [0.02, 0.05, 0.3], transient=1000, window=500, batches=2)
@@ -79,85 +114,51 @@ def sweep(
     (('a',), (3, 3))
     >>> (runs.mean_distance < 1e-6).values.tolist()
     [True, True, False]
-    >>> runs = sweep("linearized", 0.08, "plus", v=[0.05, 0.1], coupling=[0.9, 1.0, 1.1], transient=1000, window=500)
-    >>> runs.mean_distance.dims, runs.mean_distance.shape
-    (('v', 'coupling'), (2, 3))
+    >>> runs = sweep(["linearized", "nonlinear"], 0.08, ["minus", "plus"], v=[0.05, 0.1])
+    >>> runs.kind.dims, runs.kind.sel(v=0.1).values.tolist()
+    (('law', 'initial', 'v'), [[0, 1], [0, 2]])
     """
-    state = given_state(initial)
-    names = fields_of(Settings)
-    chosen = settings_of(Settings, settings, {name: value for name, value in by_name.items() if name in names})
+    named, parameters = divide(by_name, Settings)
+    chosen = settings_of(Settings, settings, named)
+    if motion is not None:
+        instance_of(motion, MotionSettings, "motion")
     cores = available_cores() if cores is None else Whole(1, 1024).form(cores, "cores")
-    parameters = {
-        name: value for name, value in (("a", a), *by_name.items()) if name not in names and value is not None
-    }
-    base, axes = _grid(law, parameters, state.blocks, chain, contact)
-    points = [dict(zip(axes, values, strict=True)) for values in product(*axes.values())]
-    models = _checked_models(base, points, state, chosen)
-    warn_of_cost(max(models, key=lambda model: model.chain.highest_rate), state, chosen)
+    laws, states = elements(law) or [law], named_states(initial)
+    parameters = {name: value for name, value in (("a", a), *parameters.items()) if value is not None}
+    sizes = [state_blocks(state) for state in states.values()]
+    shape = {"chain": chain, "blocks": blocks, "contact": contact, "state_blocks": sizes[0]}
+    grids = [_grid(item, parameters, shape) for item in laws]
+    axes: dict[str, list[Any]] = {}
+    if is_sequence(law):
+        names = [base.law.name for base, _ in grids]
+        axes["law"] = _different(names, "law", ": FormulaLaw(a, formula, name=…) has a name")
+    if is_list_of_states(initial):
+        axes["initial"] = [*states]
+    axes |= grids[0][1]
+    points = [point for base, values in grids for point in _points(base, values, states, axes, chosen)]
+    costly = max(points, key=lambda point: point.model.chain.highest_rate)
+    warn_of_cost(costly.model, costly.state, chosen)
     size = min(LOCKSTEP_RUNS, -(-len(points) // cores))
 
     def run_from(first: int) -> list[tuple[dict[str, Any], dict[str, Any]]]:
-        return _run_together(points[first : first + size], models[first : first + size], state, chosen)
+        return _run_together(points[first : first + size], chosen, motion)
 
     runs = map_in_threads(cores, run_from, range(0, len(points), size))
-    dataset = _dataset(axes, [*chained.from_iterable(runs)])
-    if remark := "; ".join(remarks_on_states([state], axes)):
+    dataset = _dataset(axes, points[0], next(iter(states)), [*chained.from_iterable(runs)])
+    if remark := "; ".join(_remarks(states, axes)):
         dataset.attrs["remark"] = remark
     return dataset
 
 
-def _checked_models(
-    base: Model, points: Sequence[Mapping[str, float]], state: InitialState, settings: Settings
-) -> list[Model]:
-    """Return the model at each point; raises ValueError if a run cannot begin there."""
-    models = [_call_at(point, base.at, **point) for point in points]
-    for point, model in zip(points, models, strict=True):
-        settings.check_chain(model.chain)
-        _call_at(point if len(point) > 1 else {}, model.begin, state, settings.start)
-    return models
+def _different(values: list[_T], name: str, hint: str = "") -> list[_T]:
+    """Return values of an axis; raises ValueError, one line, if one of them occurs twice."""
+    value, count = Counter(values).most_common(1)[0]
+    if count > 1:
+        raise ValueError(f"{name}: got {format_value(value)} twice, expected each once{hint}")
+    return values
 
 
-def _run_together(
-    points: Sequence[Mapping[str, float]], models: Sequence[Model], state: InitialState, settings: Settings
-) -> list[tuple[dict[str, Any], dict[str, Any]]]:
-    """Return the common variables and the attributes of the runs at some points."""
-    jobs = [_call_at(point, prepare, model, state, settings) for point, model in zip(points, models, strict=True)]
-    ends = run_together([job.runner for job in jobs])
-    runs = []
-    for point, job, end in zip(points, jobs, ends, strict=True):
-        run = job.result(_call_at(point, job.runner.status_of, end))
-        values = point_values(run)
-        runs.append(({name: values[name] for name in _COMMON}, point_attributes(run)))
-    return runs
-
-
-def _dataset(
-    axes: Mapping[str, list[float]], runs: Sequence[tuple[Mapping[str, Any], Mapping[str, Any]]]
-) -> xarray.Dataset:
-    """Return the runs as a Dataset over the axes, with the attributes that are the same for all of them."""
-    import xarray
-
-    shape = [len(values) for values in axes.values()]
-    plain = {name: plain_name(name) for name in axes}
-    data: dict[str, Any] = {}
-    for name, item in _COMMON.items():
-        if item.coordinate:
-            data[name] = item.dimensions, np.asarray(runs[0][0][name], item.dtype), item.all_attributes()
-        else:
-            array = np.array([values[name] for values, _ in runs], item.dtype)
-            dimensions = *plain.values(), *item.dimensions
-            data[name] = dimensions, array.reshape((*shape, *array.shape[1:])), item.all_attributes()
-    for name, values in axes.items():
-        item = _COMMON.get(name, Variable((), "f8", f"parameter {name} of the model"))
-        data[plain[name]] = plain[name], values, item.all_attributes()
-    first, *others = (attributes for _, attributes in runs)
-    common = {key: value for key, value in first.items() if all(other.get(key) == value for other in others)}
-    return xarray.Dataset(data, attrs=common).set_coords({name for name, item in _COMMON.items() if item.coordinate})
-
-
-def _grid(
-    law: Model | GivenLaw, parameters: Mapping[str, Any], blocks: int | None, chain: Chain | None, contact: str | None
-) -> tuple[Model, dict[str, list[float]]]:
+def _grid(law: Any, parameters: Mapping[str, Any], shape: Mapping[str, Any]) -> tuple[Model, dict[str, list[float]]]:
     """Return the model with all single-valued parameters, and the values of those given as sequences."""
     axes: dict[str, list[Any]] = {
         name: values for name, value in parameters.items() if (values := elements(value)) is not None
@@ -167,23 +168,96 @@ def _grid(
             raise refusal(full_key("", name), parameters[name], "one number or a sequence of numbers")
         if not values:
             raise ValueError(f"{full_key('', name)}: got no value, expected at least one")
-    single = {name: value for name, value in parameters.items() if name not in axes}
-    if isinstance(law, Model):
-        base = given_model(law, None, blocks, chain, None, contact)
-    else:
-        first = axes["a"][0] if "a" in axes else single.get("a", law.a if isinstance(law, Law) else None)
-        base = given_model(law, first, blocks, chain, None, contact)
-    for name in parameters:
-        if name not in base.parameter_names and parse_indexed_name(name) is None:
-            names = " | ".join([format_parameter_names(base.parameter_names), *sorted(fields_of(Settings))])
-            raise ValueError(f"{full_key('', name)}: not a setting or a parameter, expected {names}")
-    base = base.at(**single)
+    first = {name: axes[name][0] if name in axes else value for name, value in parameters.items()}
+    base = model_of(law, first.pop("a", None), **shape, parameters=first, settings=fields_of(Settings))
     for name, values in axes.items():
-        axes[name] = [base.at(**{name: value}).parameter(name) for value in values]
-        value, count = Counter(axes[name]).most_common(1)[0]
-        if count > 1:
-            raise ValueError(f"{name}: got {format_value(value)} twice, expected each value once")
+        axes[name] = _different([base.at(**{name: value}).parameter(name) for value in values], name)
     return base, axes
+
+
+def _points(
+    base: Model, grid: Mapping[str, list[float]], states: Mapping[str, Any], axes: Iterable[str], settings: Settings
+) -> list[_Point]:
+    """Return the points of one law; raises ValueError, with the place of the point, if a run cannot begin there."""
+    points = []
+    for (name, state), values in product(states.items(), product(*grid.values())):
+        at = dict(zip(grid, values, strict=True))
+        place = {key: {"law": base.law.name, "initial": name, **at}[key] for key in axes}
+        model = _call_at(place, base.at, **at)
+        _call_at(place, settings.check_chain, model.chain)
+        begun = _call_at(place, final_state, model, state)[0] if isinstance(state, Trajectory) else state
+        if isinstance(begun, ChainState):
+            _call_at(place, check_state, model, begun)
+        else:
+            _call_at(place, model.begin, begun, settings.start)
+        points.append(_Point(place, model, begun))
+    return points
+
+
+def _run_together(
+    points: Sequence[_Point], settings: Settings, motion: MotionSettings | None
+) -> list[tuple[dict[str, Any], dict[str, Any]]]:
+    """Return the common variables and the attributes of the runs at some points."""
+    jobs = [_call_at(point.place, prepare, point.model, point.state, settings) for point in points]
+    ends = run_together([job.runner for job in jobs])
+    runs = []
+    for point, job, end in zip(points, jobs, ends, strict=True):
+        run = job.result(_call_at(point.place, job.runner.status_of, end))
+        values = point_values(run)
+        common = {name: values[name] for name in _COMMON}
+        if motion is not None:
+            scaled = motion.scaled_to_velocity(point.model.v)
+            outcome = motion_of_run(vars(run), point.model.chain.is_mirror_symmetric, scaled)
+            common |= {"kind": outcome.kind, "period": outcome.period}
+        runs.append((common, point_attributes(run)))
+    return runs
+
+
+def _dataset(
+    axes: Mapping[str, list[Any]],
+    point: _Point,
+    state: str,
+    runs: Sequence[tuple[Mapping[str, Any], Mapping[str, Any]]],
+) -> xarray.Dataset:
+    """Return the runs as a Dataset over the axes, with the attributes that are the same for all of them.
+
+    point, state : the first point, and the name of its state, for the coordinates that do not vary
+    """
+    import xarray
+
+    shape = [len(values) for values in axes.values()]
+    plain = {name: plain_name(name) for name in axes}
+    single = {"law": point.model.law.name, "initial": state, "a": point.model.a, "v": point.model.v}
+    coordinates = {name for name in single if name not in axes}
+    data: dict[str, Any] = {name: ((), single[name], _COORDINATES[name].all_attributes()) for name in coordinates}
+    for name, item in {**_COMMON, **_MOTION}.items():
+        if name in _COORDINATES or name not in runs[0][0]:
+            continue
+        if item.coordinate:
+            coordinates.add(name)
+            data[name] = item.dimensions, np.asarray(runs[0][0][name], item.dtype), item.all_attributes()
+        else:
+            array = np.array([values[name] for values, _ in runs], item.dtype)
+            dimensions = *plain.values(), *item.dimensions
+            data[name] = dimensions, array.reshape((*shape, *array.shape[1:])), item.all_attributes()
+    for name, values in axes.items():
+        item = _COORDINATES.get(name, Variable((), "f8", f"parameter {name} of the model"))
+        data[plain[name]] = plain[name], values, item.all_attributes()
+    first, *others = (attributes for _, attributes in runs)
+    common = {key: value for key, value in first.items() if all(other.get(key) == value for other in others)}
+    return xarray.Dataset(data, attrs=common).set_coords(coordinates)
+
+
+def _remarks(states: Mapping[str, Any], axes: Iterable[str]) -> list[str]:
+    """Return a line for the states whose numbers are the same while something varies that scales the motion."""
+    varied = [name for name in axes if name not in ("law", "initial")]
+    remarks = remarks_on_states([state for state in states.values() if isinstance(state, InitialState)], varied)
+    motions = [name for name, state in states.items() if not isinstance(state, InitialState)]
+    if motions and varied:
+        remarks.append(
+            f"initial: {', '.join(motions)}: the same positions relative to the driver and velocities at every point"
+        )
+    return remarks
 
 
 def _call_at(point: Mapping[str, float], function: Callable[..., _T], *arguments: Any, **by_name: Any) -> _T:

@@ -110,8 +110,12 @@ def has_paper_numbers(state: InitialState) -> bool:
     return paper is not None and (state.position, state.velocity) == (paper.position, paper.velocity)
 
 
-def initial_state(name: str, position: Numbers | None = None, velocity: Numbers | None = None) -> InitialState:
+def initial_state(
+    name: str, position: Numbers | None = None, velocity: Numbers | None = None, key: str = "initial"
+) -> InitialState:
     """Return a state with these numbers, or without numbers the state of the paper that has this name.
+
+    key : name of the state in messages
 
     Raises ValueError, one line, for any other name without numbers, and for positions or velocities alone.
     """
@@ -119,5 +123,5 @@ def initial_state(name: str, position: Numbers | None = None, velocity: Numbers 
         return InitialState(name, position, velocity)
     if name not in PAPER_STATES or position is not None or velocity is not None:
         names = f"{' | '.join(PAPER_STATES)}{suggestion(name, PAPER_STATES)}"
-        raise ValueError(f"initial: got {format_value(name)}, expected {names}, or both position and velocity")
+        raise ValueError(f"{key}: got {format_value(name)}, expected {names}, or both position and velocity")
     return PAPER_STATES[name]
