@@ -92,7 +92,6 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     # Grids.
     "no_values": (f"study: x\na: []\n{STATES}", ["a: []", "at least 1"]),
     "large_a": (f"study: x\na: [0.1, 101]\n{STATES}", ["a[1]: 101", " 100"]),
-    "value_twice": (f"study: x\na: [0.1, {{from: 0, to: 0.2, step: 0.1}}]\n{STATES}", ["a: 0.1 twice"]),
     "one_name": (
         f"study: x\na: [0.1, 0.10001]\n{STATES}",
         ["a: got 0.1 and 0.10001, which share the file name a0.1000.nc", "a_digits"],

@@ -206,7 +206,8 @@ CONFIG = Keys(
         "study": Field(STUDY_NAME, "name of the study and of its folder in results/"),
         "a": Field(
             VALUES,
-            "friction parameters, in any order; from and to are included, and to − from must be a multiple of step",
+            "friction parameters, in any order; ranges may overlap; from and to are included, and to − from must be a "
+            "multiple of step",
             FOLLOWS,
         ),
         "grid": Field(
