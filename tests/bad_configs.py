@@ -138,7 +138,7 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "formula_start": (f"{GOOD}laws: {{m: {{formula: 1.1 - a*u}}}}\n", ["laws.m: ", "its value at u = 0 is 1.1"]),
     "formula_none": (f"{GOOD}laws: {{m: {{formula: a*u}}}}\n", ["laws.m: ", "its value at u = 0 is 0"]),
     "formula_pole_for_two_blocks": (
-        f"{GOOD}laws: {{m: {{formula: 1/(1 - 0.3*a*u)}}}}\n",
+        f"{GOOD}laws: {{m: {{formula: 1/(1 - 0.3*a*u)}}}}\nchains: {{two_blocks: {{}}}}\n",
         ["chains.two_blocks.a: got 0.34, at which ", "laws.m: ", "at a = 0.34", "not analytic"],
     ),
     "formula_pole": (f"{GOOD}laws: {{m: {{formula: 1/(1 - a*u)}}}}\n", ["laws.m: ", "at a = 0.1", "not analytic"]),

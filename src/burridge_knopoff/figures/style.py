@@ -242,7 +242,7 @@ def cells(values: np.ndarray) -> np.ndarray:
 
 
 def map_cells(values: np.ndarray) -> np.ndarray:
-    """Return the edges of the cells of several ascending values in a map, which ends at the first and the last value."""
+    """Return the edges of the cells of ascending values in a map, which ends at the first and the last of them."""
     return np.clip(cells(values), values[0], values[-1])
 
 

@@ -198,7 +198,7 @@ CHAINS = {
     "symmetric_samples": replace(_SAMPLE["symmetric_samples"], range=SAMPLES),
     **{key: _SAMPLE[key] for key in ("seed", "position", "velocity")},
     **_settings_of(Watch, "synchronization_threshold"),
-    "two_blocks": _section("comparison of the laws for two blocks", TWO_BLOCKS),
+    "two_blocks": _optional_section("comparison of the laws for two blocks", TWO_BLOCKS),
 }
 
 CONFIG = Keys(

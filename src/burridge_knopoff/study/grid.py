@@ -64,7 +64,7 @@ def _named(parameter: str, place: str, items: Sequence[Any], digits: int) -> dic
 
 
 def values_of(items: Sequence[Any], place: str) -> list[float]:
-    """Return the numbers and the values of the ranges in a list, which may overlap, each value once, in ascending order.
+    """Return the numbers and the values of the ranges in a list, each value once, in ascending order.
 
     Raises ValueError, one line that starts with the place, for too many values.
     """
