@@ -23,7 +23,7 @@ from burridge_knopoff.model.parameters import plain_name
 from burridge_knopoff.model.ranges import OneOf, Range, Several
 from burridge_knopoff.provenance.files import LONGEST_NAME
 from burridge_knopoff.running.settings import LONGEST_STEP, SOLVERS, Settings, shortest_step
-from burridge_knopoff.study.config import SOME_VALUES
+from burridge_knopoff.study.config import SOME_VALUES, LawKeys, check_law_numbers
 from burridge_knopoff.study.grid import MAXIMUM_POINTS, values_of
 from burridge_knopoff.study.paper import PAPER_BASINS, PAPER_COMPARED, PAPER_PHASES
 from burridge_knopoff.study.paths import point_file
@@ -98,6 +98,8 @@ def fill_names(config: dict[str, Any]) -> None:
     for name, description in laws.items():
         if name not in LAWS and not {"law", "formula"} & description.keys():
             raise unknown_law(f"laws.{name}", name)
+        with error_prefix(f"laws.{name}."):
+            check_law_numbers(description.keys() - LawKeys.fields.keys())
     law_names, first = OneOf(tuple(laws)), next(iter(laws))
     law_names.form(config["figures"].setdefault("law", first), "figures.law")
     Several(law_names).form(config["chains"].setdefault("laws", [first]), "chains.laws")
