@@ -12,7 +12,16 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import ACROSS, COLUMN, PAGE, cells, even_indices, label_panels, new_figure, show_all
+from burridge_knopoff.figures.style import (
+    ACROSS,
+    COLUMN,
+    PAGE,
+    even_indices,
+    label_panels,
+    map_cells,
+    new_figure,
+    show_all,
+)
 
 #: Most values of each further parameter that have panels.
 MOST = 6
@@ -29,8 +38,9 @@ def draw_panels(
 ) -> tuple[Figure, list[Axes], QuadMesh | None]:
     """Draw a panel for each law, initial state and value of further parameters; return figure, panels and the last map.
 
-    The first two parameters with several values are the axes of a map; a single one is the axis of a curve. Of further
-    parameters at most MOST values are shown, which are evenly spaced in the list of all.
+    The first two parameters with several values are the axes of a map, with each value at its place; a single one is
+    the axis of a curve. Of further parameters at most MOST values are shown, which are evenly spaced in the list of
+    all.
 
     label : of the vertical axis of a curve
     curve : draws one panel, from the values of the parameter and the Dataset over it
@@ -66,7 +76,7 @@ def draw_map(
 ) -> QuadMesh:
     """Draw a map over the first two of the parameters; other arguments are those of `draw_panels`."""
     first, second = varied[:2]
-    edges = [cells(part[name].values) for name in (first, second)]
+    edges = [map_cells(part[name].values) for name in (first, second)]
     panel.set_xlim(edges[0][0], edges[0][-1])
     return panel.pcolormesh(*edges, colors(part.transpose(second, first, ...)), rasterized=True, **look)
 

@@ -251,6 +251,11 @@ def cells(values: np.ndarray) -> np.ndarray:
     return np.concatenate([2.0 * values[:1] - middle[:1], middle, 2.0 * values[-1:] - middle[-1:]])
 
 
+def map_cells(values: np.ndarray) -> np.ndarray:
+    """Return the edges of the cells of ascending values in a map, which ends at the first and the last of them."""
+    return np.clip(cells(values), values[0], values[-1])
+
+
 def strips(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the left and right ends of strips that stand for ascending values.
 
