@@ -74,13 +74,16 @@ def test_every_function_of_a_model_takes_a_law_and_a(name):
     arguments = dict(CALLS[name])
     given = arguments.pop(OF_MODEL[name])
     base = given if isinstance(given, Model) else Model(Chain(3), law_of(given, 0.08))
-    arguments = {key: value for key, value in arguments.items() if key not in ("a", "chain", "v")}
+    # A list of a stays.
+    grid = {"a": values} if isinstance(values := arguments.get("a"), list) else {}
+    arguments = {key: value for key, value in arguments.items() if key not in ("a", "chain", "v")} | grid
     function = getattr(burridge_knopoff, name)
+    others = {"chain": base.chain, "v": base.v, "contact": base.contact}
     results = [
         function(base, **arguments),
         function(model=base, **arguments),
-        function(base.law.name, base.a, chain=base.chain, v=base.v, contact=base.contact, **arguments),
-        function(base.law, chain=base.chain, v=base.v, contact=base.contact, **arguments),
+        function(base.law.name, **{"a": base.a, **others, **arguments}),
+        function(base.law, **others, **arguments),
     ]
     for result in results[1:]:
         assert said(result) == said(results[0])
