@@ -12,12 +12,12 @@ import xarray
 
 from burridge_knopoff.dataset.point import with_run_coordinates
 from burridge_knopoff.dataset.variables import NETCDF_LOCK
+from burridge_knopoff.library.combined_points import combine_points
 from burridge_knopoff.messages import escape_unprintable, refusal
 from burridge_knopoff.outputs import study_files
 from burridge_knopoff.study.integrity import check_file
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import all_points
-from burridge_knopoff.summaries.points import combine_points
 
 #: Length of a title in a list of summaries.
 LONGEST = 70
