@@ -34,6 +34,9 @@ class MapModel:
     def at(self, a):
         return replace(self, a=a)
 
+    def parameter(self, name):
+        return getattr(self, name)
+
     def begin(self, state, start="moving"):
         return ChainState(np.array(state.position), np.full(1, 0.1), np.zeros(1, dtype=bool))
 

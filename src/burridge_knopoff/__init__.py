@@ -3,11 +3,18 @@
 Import the public names from here. `help` of each name gives shapes, units, errors and an example.
 
 Model: `Model` is a `Chain` under a friction `Law`. `law_of` returns the built-in laws, and `FormulaLaw` is a law given
-by a formula. A run begins at an `InitialState`; a `ChainState` is the state at a later time.
+by a formula. A run begins at an `InitialState`; a `ChainState` is the state at a later time. `PhysicalUnits` converts
+a physical system to the model and back.
+
+Every function of a model takes a `Model`, or a law and a with everything else by name: `chain` or `blocks`, v, contact,
+parameters of the law and of the chain. Every state may be one of the paper's names, an `InitialState`, its numbers, a
+`ChainState` or a `Run`, which stands for its final state.
 
 Runs: `simulate` returns a `Run`, whose `Trajectory` is computed with `Settings` and seen on a `Section`. `sweep`
 computes many runs over any parameters. `open_study` opens the results of a study, and `decode_flags` translates the
 values of a flag.
+
+Pictures: `plot` draws each of these results, and all those below, as the figures of a study.
 
 Slip events: `record_events` and `Run.catalogue` return a `Catalogue` with the `SlipEvents` of a run. `fit_slope` fits
 the `Slope` of their magnitudes. `event_multipliers` and `event_exponents` return the multipliers and the
@@ -15,8 +22,9 @@ the `Slope` of their magnitudes. `event_multipliers` and `event_exponents` retur
 
 Attractors and basins: `find_attractors` returns the `Attractor`s of a model, each with its `SteadyMotion`, `MotionKind`
 and `Symmetry`; `SearchSettings` and `MotionSettings` control the search. `label_states` determines the attractor that
-each state reaches, and `basin_map` those of a plane of states. `edge_state` follows the boundary between two basins to
-its `EdgeState`, with `EdgeSettings`.
+each state reaches, and `basin_map` those of a plane of states. `continue_attractors` returns the attractors along a
+parameter, with their branches and basin fractions. `edge_state` follows the boundary between two basins to its
+`EdgeState`, with `EdgeSettings`.
 
 Periodic orbits: `limit_cycle`, `find_periodic_orbit` and `synchronized_orbit` return a `PeriodicOrbit` or raise
 `OrbitError`. `multipliers` returns its Floquet `Multipliers`.
@@ -26,9 +34,10 @@ Exponents: a `Trajectory` contains its Lyapunov exponents. `transverse_exponent`
 Locking: `block_frequencies` returns the frequency of each block, and `mode_amplitudes` the `ModeAmplitudes` of the
 chain's normal modes, which tell locked blocks from blocks that move in one mode.
 
-Bifurcations: `follow` continues a periodic orbit in any parameter, with `ContinuationSettings`, and returns its
-branch as `BranchOrbit`s. `locate_bifurcations` finds each `Bifurcation` on the branch and its `BifurcationKind`.
-`follow_bifurcation` continues a bifurcation in two parameters and returns a `BifurcationCurve`.
+Bifurcations: `follow` continues a periodic orbit, or that on which a motion settles, in any parameter, with
+`ContinuationSettings`, and returns its branch as `BranchOrbit`s. `locate_bifurcations` finds each `Bifurcation` on the
+branch and its `BifurcationKind`. `follow_bifurcation` continues a bifurcation in two parameters and returns a
+`BifurcationCurve`.
 """
 
 import lazy_loader

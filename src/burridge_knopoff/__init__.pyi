@@ -24,8 +24,11 @@ from .library.analyses import synchronized_orbit as synchronized_orbit
 from .library.analyses import transverse_exponent as transverse_exponent
 from .library.basin_map import basin_map as basin_map
 from .library.catalogue import Catalogue as Catalogue
+from .library.continue_attractors import continue_attractors as continue_attractors
 from .library.find_attractors import find_attractors as find_attractors
+from .library.follow import follow as follow
 from .library.open_study import open_study as open_study
+from .library.plot import plot as plot
 from .library.run import Run as Run
 from .library.simulate import simulate as simulate
 from .library.sweep import sweep as sweep
@@ -33,6 +36,7 @@ from .model.chain import Chain as Chain
 from .model.initial import InitialState as InitialState
 from .model.model import ChainState as ChainState
 from .model.model import Model as Model
+from .model.physical_units import PhysicalUnits as PhysicalUnits
 from .motion.kind import MotionKind as MotionKind
 from .motion.modes import ModeAmplitudes as ModeAmplitudes
 from .motion.observables import SteadyMotion as SteadyMotion
@@ -46,7 +50,6 @@ from .periodic_orbits.floquet import Multipliers as Multipliers
 from .periodic_orbits.floquet import multipliers as multipliers
 from .periodic_orbits.flow import OrbitError as OrbitError
 from .periodic_orbits.following import ContinuationSettings as ContinuationSettings
-from .periodic_orbits.following import follow as follow
 from .periodic_orbits.periodic import PeriodicOrbit as PeriodicOrbit
 from .periodic_orbits.pseudo_arclength import BranchOrbit as BranchOrbit
 from .periodic_orbits.symmetry import Symmetry as Symmetry

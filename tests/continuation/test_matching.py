@@ -7,7 +7,7 @@ import pytest
 
 from burridge_knopoff.continuation.branches import branches
 from burridge_knopoff.continuation.matching import COMPARED_RETURNS, SAME_SET, DistanceMatcher, Outline, outlines
-from tests.motion.stand_in import ASYMMETRIC, SYNCHRONIZED, at
+from tests.motion.stand_in import ASYMMETRIC, MODEL, SYNCHRONIZED, at
 
 
 def pair(place, ahead, mean=0.1):
@@ -19,7 +19,7 @@ def pair(place, ahead, mean=0.1):
 def follow_branches(attractors, memory):
     """Return the branches, and sides, of attractors at a = 0.1, 0.2, …"""
     numbers = branches(
-        [(k + 1) / 10 for k in range(len(attractors))], attractors, range(len(attractors)), memory, DistanceMatcher(1.0)
+        [(k + 1) / 10 for k in range(len(attractors))], attractors, range(len(attractors)), memory, DistanceMatcher()
     )
     return tuple([row.tolist() for row in values] for values in numbers)
 
@@ -42,10 +42,10 @@ def test_an_orbit_and_the_chaos_around_it_continue_as_separate_branches():
     chaos_before, chaos_after = np.linspace(0.0, 0.1, 6), np.linspace(0.008, 0.108, 6)
     before = outlines([at(*chaos_before, partner=0), at(0.041, partner=1)])
     after = outlines([at(0.042, partner=0), at(*chaos_after, partner=1)])
-    assert DistanceMatcher(1.0).match(before, after) == {0: 1, 1: 0}
+    assert DistanceMatcher().match(before, after) == {0: 1, 1: 0}
     # Alone, each may match the other.
-    assert DistanceMatcher(1.0).match({0: before[0]}, {0: after[0]}) == {0: 0}
-    assert DistanceMatcher(1.0).match({1: before[1]}, {1: after[1]}) == {1: 1}
+    assert DistanceMatcher().match({0: before[0]}, {0: after[0]}) == {0: 0}
+    assert DistanceMatcher().match({1: before[1]}, {1: after[1]}) == {1: 1}
 
 
 def test_returns_are_thinned_out_evenly():
@@ -58,21 +58,32 @@ def test_all_pairs_are_matched_together():
     """Of two sets close to one the closer is matched, if the other has another match; none matches beyond the limit."""
     before = outlines([at(0.0, partner=0), at(0.02, partner=1)])
     after = outlines([at(0.015, partner=0), at(0.035, partner=1)])
-    assert DistanceMatcher(1.0).match(before, after) == {0: 0, 1: 1}
-    assert DistanceMatcher(1.0).match(before, outlines([at(0.015, partner=0)])) == {0: 1}
+    assert DistanceMatcher().match(before, after) == {0: 0, 1: 1}
+    assert DistanceMatcher().match(before, outlines([at(0.015, partner=0)])) == {0: 1}
     limit = SAME_SET
     for place, expected in ((0.99 * limit, {0: 0}), (1.01 * limit, {})):
         first = {0: Outline(at(0.0))}
-        assert DistanceMatcher(1.0).match(first, {0: Outline(at(place))}) == expected
-    assert DistanceMatcher(1.1).match(first, {0: Outline(at(1.01 * limit))}) == {0: 0}
-    assert DistanceMatcher(1.0).match({}, after) == {}
+        assert DistanceMatcher().match(first, {0: Outline(at(place))}) == expected
+    faster = replace(MODEL, v=0.11)
+    first, second = (Outline(at(place, model=faster)) for place in (0.0, 1.01 * limit))
+    assert DistanceMatcher().match({0: first}, {0: second}) == {0: 0}
+    assert DistanceMatcher().match({}, after) == {}
+
+
+@pytest.mark.parametrize("place", [1.0, 1.2])
+def test_sets_of_another_v_match_as_they_are_or_in_proportion_to_v(place):
+    """The set is at 1 for v = 0.1, and at 1 or 1.2 for v = 0.12; at 1.1 it is another set."""
+    slow, fast = at(1.0), at(place, model=replace(MODEL, v=0.12))
+    assert Outline(fast).distances(Outline(slow)) == pytest.approx(np.zeros((2, 2)), abs=1e-12)
+    assert DistanceMatcher().match(outlines([slow]), outlines([fast])) == {0: 0}
+    assert DistanceMatcher().match(outlines([slow]), outlines([at(1.1, model=fast.model)])) == {}
 
 
 def test_synchrony_is_matched_only_with_synchrony():
     """This holds however far it has moved."""
     still, far = (at(place, symmetry=SYNCHRONIZED) for place in (0.0, 9.0))
     for before, after, expected in ((still, at(0.0), {}), (at(0.0), still, {}), (still, far, {0: 0})):
-        assert DistanceMatcher(1.0).match(outlines([before]), outlines([after])) == expected
+        assert DistanceMatcher().match(outlines([before]), outlines([after])) == expected
 
 
 def test_several_synchronized_attractors_are_several_branches():
@@ -81,7 +92,7 @@ def test_several_synchronized_attractors_are_several_branches():
     )
     swapped = [replace(second, partner=0), replace(first, partner=1)]
     branch, side = branches(
-        [0.1, 0.2, 0.3], [[first, second], swapped, [replace(second, partner=0)]], range(3), 0.1, DistanceMatcher(1.0)
+        [0.1, 0.2, 0.3], [[first, second], swapped, [replace(second, partner=0)]], range(3), 0.1, DistanceMatcher()
     )
     assert [row.tolist() for row in branch] == [[0, 1], [1, 0], [1]]
     assert not np.concatenate(side).any()
@@ -128,7 +139,7 @@ def test_an_unchanged_branch_keeps_its_number_across_inserted_values():
         ([again], [[1], [1], [1, 2]]),
         ([again, new], [[1], [1, 2], [1, 2]]),
     ):
-        numbers, _ = branches([0.1, 0.2, 0.3], [[still], between, [again, new]], [0, 2], 0.3, DistanceMatcher(1.0))
+        numbers, _ = branches([0.1, 0.2, 0.3], [[still], between, [again, new]], [0, 2], 0.3, DistanceMatcher())
         assert [row.tolist() for row in numbers] == expected
 
 

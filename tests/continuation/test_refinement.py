@@ -28,7 +28,7 @@ def values():
 
         ends = [Scripted(Model(Chain(3), law_of("linearized", a)), attractors=attractors(a)) for a in (low, high)]
         with parallel_map(1) as pool:
-            (inner,) = refine_searches(ends, RefinementSettings(resolution), DistanceMatcher(1.0), pool)
+            (inner,) = refine_searches(ends, RefinementSettings(resolution), DistanceMatcher(), pool)
         return [search.model.a for search in inner], calls
 
     return insert_values

@@ -17,6 +17,7 @@ from burridge_knopoff import (
     InitialState,
     SearchSettings,
     basin_map,
+    continue_attractors,
     edge_state,
     find_attractors,
     fit_slope,
@@ -85,6 +86,14 @@ NUMBERS = {
     "Catalogue.mean.values": (EVENT_VALUES, lambda x: EVENTS.mean(x)),
     "Catalogue.mean.weights": (EVENT_VALUES, lambda x: EVENTS.mean(EVENT_VALUES, x)),
     "Catalogue.rate.chosen": ([value > 1.0 for value in EVENT_VALUES], lambda x: EVENTS.rate(x)),
+    "continue_attractors.a": (
+        [0.08, 0.09],
+        lambda x: continue_attractors("linearized", x, **SEARCH, fraction_width=0.5, cores=1).mean_distance,
+    ),
+    "follow.initial": (
+        STATES,
+        lambda x: [p.value for p in follow("linearized", 0.08, [0.0799, 0.0801], initial=x)],
+    ),
     "follow.interval": (ENDS, lambda x: [len(follow(CALLS["follow"]["orbit"], x))]),
 }
 #: {argument: a list of other things that it takes, and what comes of them}
@@ -93,6 +102,12 @@ THINGS = {
     "label_states.attractors": (
         CALLS["edge_state"]["attractors"],
         lambda x: label_states(CALLS["edge_state"]["model"], x, [POSITION], [VELOCITY])[0],
+    ),
+    "continue_attractors.starts": (
+        ["minus", "plus"],
+        lambda x: (
+            continue_attractors("linearized", [0.08], starts=x, **SEARCH, fraction_width=0.5, cores=1).mean_distance
+        ),
     ),
     "locate_bifurcations.branch": (CALLS["locate_bifurcations"]["branch"], lambda x: len([*locate_bifurcations(x)])),
 }

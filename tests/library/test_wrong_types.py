@@ -18,6 +18,7 @@ from burridge_knopoff import (
     Model,
     MotionSettings,
     OrbitError,
+    PhysicalUnits,
     SearchSettings,
     Symmetry,
     find_attractors,
@@ -74,6 +75,14 @@ def correct_calls():
         "event_exponents": {"model": DROPPING, "state": REST, "end": 90.0, "begin": 10.0, "count": 1},
         "event_multipliers": {"model": DROPPING, "state": REST, "end": 10.3},
         "find_attractors": {"law": "linearized", "a": 0.08, "settings": SEARCH, "starts": ["plus"]},
+        "continue_attractors": {
+            "law": "linearized",
+            "a": [0.08],
+            "settings": SEARCH,
+            "refine": 1.0,
+            "starts": ["plus"],
+            "cores": 1,
+        },
         "find_periodic_orbit": {
             "model": MODEL,
             "guess": orbit.reference,
@@ -167,6 +176,10 @@ METHODS = {
     "PeriodicOrbit.events_of": lambda: (CALLS["follow"]["orbit"], {"block": 1}),
     "PeriodicOrbit.start": lambda: (CALLS["follow"]["orbit"], {"block": 1}),
     "PeriodicOrbit.stick_time": lambda: (CALLS["follow"]["orbit"], {"block": 1}),
+    "PhysicalUnits.v": lambda: (PhysicalUnits(0.5, 200.0, 2.0), {"speed": 0.02}),
+    "PhysicalUnits.speed": lambda: (PhysicalUnits(0.5, 200.0, 2.0), {"v": 0.1}),
+    "PhysicalUnits.a": lambda: (PhysicalUnits(0.5, 200.0, 2.0), {"friction_slope": -0.8}),
+    "PhysicalUnits.friction_slope": lambda: (PhysicalUnits(0.5, 200.0, 2.0), {"a": 0.1}),
     "Run.catalogue": lambda: (simulate(DROPPING, initial=REST, **QUICK), {"window": 5.0, "transient": 1.0}),
 }
 #: Functions of a physical quantity.

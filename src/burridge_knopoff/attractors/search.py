@@ -146,10 +146,18 @@ class Search(Convergence):
     capture: Capture = field(default_factory=Capture)
 
     def seeds(self, attractors: Iterable[Attractor]) -> list[ChainState]:
-        """Return a state on each of the attractors of a neighbouring a, slightly perturbed off any symmetry."""
+        """Return a state on each of the attractors of a neighbouring a, slightly perturbed off any symmetry.
+
+        Between models of different v, states change in proportion to v.
+        """
         generator = np.random.default_rng(self.settings.seed)
         size = SYMMETRY_PUSH * self.resolution
-        return [perturb(attractor.motion.state(), size, generator) for attractor in attractors]
+        states = []
+        for attractor in attractors:
+            state, share = attractor.motion.state(), self.model.scale / attractor.model.scale
+            state = ChainState(share * state.position, share * state.velocity, state.stuck)
+            states.append(perturb(state, size, generator))
+        return states
 
     def starts(self, initial: Sequence[InitialState | ChainState], start: str) -> list[ChainState]:
         """Return the states at τ = 0 of the drawn initial states, followed by the given ones."""

@@ -67,10 +67,6 @@ _SLOW = flag("i1", {-1: "none", 0: "no", 1: "yes"})
 _SIDE = "side of the branch: 1 and -1 for the two of a mirror pair, 0 for a set that is its own mirror image"
 _POINTS = "period in section points: number of upward section points after which the state of all blocks "
 "repeats, 0 if it does not"
-_LIFE = (
-    "mean lifetime of chaos: inf if no trajectory of an ensemble left it; NaN for other motion, and "
-    "at inserted values of a between two at which the chaos lasts"
-)
 _RETURNS = "returns until capture: number of successive returns within the radius after which a trajectory "
 "counts as captured"
 _PATIENCE = "patience: time by which a captured trajectory may still reach a periodic orbit embedded in the "
@@ -85,8 +81,8 @@ NAMES = {
 }
 
 
-def slot_variables(place: str) -> dict[str, Column]:
-    """Return the variables of a slot, over (place, attractor), `place` being the dimension of a."""
+def slot_variables(place: str, parameter: str = "a") -> dict[str, Column]:
+    """Return the variables of a slot, over (place, attractor), `place` being the dimension of a parameter."""
 
     def column(path: str, dtype: str, text: str, attributes: Mapping[str, Any] | None = None, *last: str) -> Column:
         return Column((place, "attractor", *last), dtype, text, attributes or {}, value=attrgetter(path))
@@ -97,10 +93,17 @@ def slot_variables(place: str) -> dict[str, Column]:
         )
 
     of = "row.attractor"
+    lasting = (
+        "mean lifetime of chaos: inf if no trajectory of an ensemble left it; NaN for other motion, and "
+        f"at inserted values of {parameter} between two at which the chaos lasts"
+    )
     mean = "mean distance <J>: time average of the phase-space distance between the end blocks"
     return {
         "branch": column(
-            "row.branch", "i2", "branch: number of the branch of attractors along a; 0 is the synchronized one", NOTHING
+            "row.branch",
+            "i2",
+            f"branch: number of the branch of attractors along {parameter}; 0 is the synchronized one",
+            NOTHING,
         ),
         "side": replace(column("row.side", "i1", _SIDE), nothing=0),
         "symmetry": column(f"{of}.symmetry", "i1", "mirror symmetry of the attractor", _SYMMETRY),
@@ -111,7 +114,7 @@ def slot_variables(place: str) -> dict[str, Column]:
         "kind": column("kind", "i1", "kind of motion", flag("i1", MotionKind)),
         "section_period": replace(column(f"{of}.motion.section_period", "i2", _POINTS), nothing=0),
         "period": column(f"{of}.motion.period", "f8", *PERIOD),
-        "lifetime": life(_LIFE, lambda lifetime: lifetime.mean),
+        "lifetime": life(lasting, lambda lifetime: lifetime.mean),
         "lifetime_low": life(
             "lower end of the lifetime: of its 95 % confidence interval", lambda lifetime: lifetime.interval[0]
         ),
@@ -142,7 +145,7 @@ def slot_values(
 
     models, rows : at each a
     least_lifetime : mean lifetime up to which chaos counts as transient
-    dimension : name of the dimension of a
+    dimension : name of the dimension of the parameter
     """
     shape = {
         dimension: len(models),

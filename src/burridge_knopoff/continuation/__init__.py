@@ -1,1 +1,1 @@
-"""Attractors along a: matched into branches, refined, followed to their bifurcations."""
+"""Attractors along a parameter: matched into branches, refined; followed along a to their bifurcations."""

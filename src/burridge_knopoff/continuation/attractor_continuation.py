@@ -1,8 +1,8 @@
-"""The attractors of one law along a: searched for at each a, from initial states and from the neighbouring values.
+"""The attractors of one law along a parameter: searched for at each value, from initial states and the neighbours.
 
-Between neighbouring values of a at which the attractors differ, values are inserted until each change is located. The
-work at each a, and between two values, is shared among processes. Only a chain of values that each get a new attractor
-from the one before is processed in sequence.
+The parameter is mostly a. Between neighbouring values at which the attractors differ, values are inserted until each
+change is located. The work at each value, and between two values, is shared among processes. Only a chain of values
+that each get a new attractor from the one before is processed in sequence.
 
 Reference: G. Datseris, K. Luiz Rossi and A. Wagemakers, "Framework for global stability analysis of dynamical systems",
 Chaos 33 (2023) 073151: the search at each parameter begins from the attractors at the one before.
@@ -10,7 +10,7 @@ Chaos 33 (2023) 073151: the search at each parameter begins from the attractors 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
@@ -31,7 +31,7 @@ from burridge_knopoff.continuation.matching import DistanceMatcher, Matcher, out
 from burridge_knopoff.continuation.refinement import refine_searches
 from burridge_knopoff.continuation.settings import REFINEMENT, RefinementSettings
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.kind import CHAOS
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.running.processes import ParallelMap, parallel_map
@@ -42,9 +42,9 @@ SEARCHED, INSERTED, LIFETIMES = (0.0, 0.34), (0.49, 0.87), (0.87, 1.0)
 
 @dataclass(frozen=True, eq=False)
 class Continuation:
-    """The attractors of one law along a.
+    """The attractors of one law along a parameter.
 
-    models : at each a, ascending: the given ones and those inserted between them
+    models : at each of its values, ascending: the given ones and those inserted between them
     grid : indices in `models` of the given ones
     attractors : for each given model those that coexist there; for each inserted one those that change near it
     lifetimes : for each model and attractor its lifetime if it is chaotic, None otherwise; also None at inserted values
@@ -53,6 +53,7 @@ class Continuation:
     upward, downward : for each given model and attractor the index of the attractor reached at the next or the previous
         given model, −1 if it is undetermined or there is none
     samples : for each given model the index of the attractor that each state drawn for the basin fractions reaches
+    parameter : name of the parameter
     """
 
     models: list[Model]
@@ -64,6 +65,17 @@ class Continuation:
     upward: list[np.ndarray]
     downward: list[np.ndarray]
     samples: list[np.ndarray]
+    parameter: str = "a"
+
+    @property
+    def values(self) -> list[float]:
+        """The value of the parameter in each model."""
+        return [model.parameter(self.parameter) for model in self.models]
+
+    @property
+    def most_attractors(self) -> int:
+        """Largest number of attractors at a value of the grid, and at least 1."""
+        return max(1, *(len(self.attractors[place]) for place in self.grid))
 
     def rows(self, place: int) -> list[Row]:
         """Return the attractors of one model as rows of the table, ordered by branch and side."""
@@ -78,13 +90,17 @@ def continue_attractors(
     motion: MotionSettings = MOTION,
     refine: RefinementSettings = REFINEMENT,
     *,
-    starts: Sequence[InitialState] = (),
+    parameter: str = "a",
+    starts: Sequence[InitialState | ChainState] = (),
     start: str = "moving",
     matcher: Matcher | None = None,
     processes: int = 1,
     folder: str | Path | None = None,
+    report: Callable[[float], None] | None = None,
 ) -> Continuation:
     """Find the attractors of all models, of ascending a, from initial states and from each other, and match them.
+
+    The models may differ in another parameter than a, which takes its place.
 
     1. Search each a from initial states.
     2. Seed: start each attractor at the neighbouring a where it has no unchanged match, downward, then upward.
@@ -96,15 +112,17 @@ def continue_attractors(
     7. Measure the lifetimes of chaos.
 
     settings, motion, starts, start : see `find_attractors`
-    refine : how closely changes are located in a
+    parameter : the parameter in which the models differ
+    refine : how closely changes are located in it
     matcher : decides which attractors at two values of a are the same; by default a `DistanceMatcher`
     processes, folder : number of processes, and the cache of their results; see `parallel_map`. The results do not
         depend on them
+    report : see `parallel_map`
 
     Raises ValueError if an initial state does not fit the models.
     """
-    matcher = matcher or DistanceMatcher(models[0].scale, refine.longest_period)
-    with parallel_map(processes, folder, CLASSES) as pool:
+    matcher = matcher or DistanceMatcher(refine.longest_period)
+    with parallel_map(processes, folder, CLASSES, report) as pool:
         searches = [Search(model, settings, motion) for model in models]
         searches = pool(
             "searched from initial states", partial(_search, starts=starts, start=start), searches, span=SEARCHED
@@ -113,21 +131,21 @@ def continue_attractors(
         searches, samples = _label_samples(searches, start, pool, matcher)
         # The sets of attractors are complete now; from here on they are only read.
         upward, downward = _sweep(searches, pool)
-        inserted = refine_searches(searches, refine, matcher, pool, INSERTED)
+        inserted = refine_searches(searches, refine, matcher, pool, INSERTED, parameter)
         all_searches = [searches[0]]
         for inner, right in zip(inserted, searches[1:], strict=True):
             all_searches += [*inner, right]
         grid = [all_searches.index(search) for search in searches]
         attractors = [search.attractors for search in all_searches]
-        widest = max((right.a - left.a for left, right in pairwise(models)), default=0.0)
-        values = [search.model.a for search in all_searches]
+        values = [search.model.parameter(parameter) for search in all_searches]
+        widest = max((values[high] - values[low] for low, high in pairwise(grid)), default=0.0)
         branch, side = branches(values, attractors, grid, REMEMBERED * widest, matcher)
         lives = _lifetimes_along_a(all_searches, branch, grid, pool)
     all_models = [search.model for search in all_searches]
-    return Continuation(all_models, grid, attractors, lives, branch, side, upward, downward, samples)
+    return Continuation(all_models, grid, attractors, lives, branch, side, upward, downward, samples, parameter)
 
 
-def _search(search: Search, starts: Sequence[InitialState], start: str) -> Search:
+def _search(search: Search, starts: Sequence[InitialState | ChainState], start: str) -> Search:
     """Find attractors from initial states."""
     search.find(search.starts(starts, start))
     return search

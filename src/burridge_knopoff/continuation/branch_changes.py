@@ -47,17 +47,18 @@ class BranchChange:
     change: Change
 
 
-def branch_changes(attractors: xarray.Dataset, refined: xarray.Dataset) -> list[BranchChange]:
+def branch_changes(attractors: xarray.Dataset, refined: xarray.Dataset, parameter: str = "a") -> list[BranchChange]:
     """Return the beginnings, ends and changes of the branches of one law, sorted by a.
 
     attractors, refined : those of one law at the values of the grid, and at all values
+    parameter : name of the variable in `refined` with these values
 
     A branch changes if the kind of motion, the mirror symmetry, or the number of section points of periodic motion
     changes. A torus and the orbits longer than `refine.longest_period` to which it is locked count as the same motion.
     One motion of each mirror pair is examined. The first and the last value of a are not ends. Between values of the
     grid only changing branches are searched for, so a branch has ended only where it is absent from the grid.
     """
-    slots = slots_of_branches(refined)
+    slots = slots_of_branches(refined, parameter)
     grid = np.flatnonzero(refined["in_grid"].values[: len(slots)] == 1)
     upward, downward = (
         dict(zip(grid.tolist(), attractors[name].values, strict=True)) for name in ("upward_branch", "downward_branch")
@@ -90,9 +91,9 @@ def branch_changes(attractors: xarray.Dataset, refined: xarray.Dataset) -> list[
     return sorted((item for branch in branches for item in of_branch(branch)), key=lambda item: (item.low, item.high))
 
 
-def slots_of_branches(refined: xarray.Dataset) -> list[dict[int, int]]:
+def slots_of_branches(refined: xarray.Dataset, parameter: str = "a") -> list[dict[int, int]]:
     """Return for each a of one law the slot of each branch, one side of a mirror pair."""
-    count = int(np.isfinite(refined["a"].values).sum())
+    count = int(np.isfinite(refined[parameter].values).sum())
     branch, side = refined["branch"].values[:count], refined["side"].values[:count]
     rows = []
     for numbers, sides in zip(branch, side, strict=True):

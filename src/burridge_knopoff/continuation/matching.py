@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -21,9 +21,10 @@ from burridge_knopoff.motion.kind import REGULAR, MotionKind
 from burridge_knopoff.motion.set_distance import distance
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
-#: Distance, for v = 0.1, within which sets at neighbouring values of a belong to one branch. In the paper's study a set
-#: that changes smoothly moves by at most 0.007 per step, a torus that is locked to one orbit after another by at most
-#: 0.036, and coexisting sets are more than 0.04 apart, except orbits that have branched off from one another.
+#: Distance, for v = 0.1, within which sets at neighbouring values of a parameter belong to one branch. In the paper's
+#: study a set that changes smoothly moves by at most 0.007 per step of a, a torus that is locked to one orbit after
+#: another by at most 0.036, and coexisting sets are more than 0.04 apart, except orbits that have branched off from one
+#: another.
 SAME_SET = 0.03
 
 #: Number of returns of a set, evenly chosen, that are compared with another set.
@@ -51,11 +52,25 @@ class Outline:
         """An even selection of the returns of the mirror image."""
         return _thin(self.attractor.motion.mirror_returns)
 
+    def scaled(self, share: float) -> Outline:
+        """Return the outline of the same set with all returns multiplied by a factor."""
+        motion = self.attractor.motion
+        scaled = replace(motion, returns=share * motion.returns, mirror_returns=share * motion.mirror_returns)
+        return Outline(replace(self.attractor, motion=scaled))
+
     def distances(self, other: Outline, bound: float = np.inf) -> np.ndarray:
         """Return the directed distances of the set and of its mirror image from another set, the smaller first.
 
         The rows, of shape (2, 2), are for the set and its mirror image. bound : larger distances may be infinite
+
+        Sets are in proportion to v under the linearized law, but may hardly depend on v under another. If v differs,
+        the other set is compared as it is and in proportion to v, and the smaller distance counts.
         """
+        share = self.attractor.model.scale / other.attractor.model.scale
+        distances = self._distances(other, bound)
+        return distances if share == 1.0 else np.minimum(distances, self._distances(other.scaled(share), bound))
+
+    def _distances(self, other: Outline, bound: float) -> np.ndarray:
         distances = np.full((2, 2), np.inf)
         distances[0] = distance(self.returns, other.tree, bound=bound), distance(other.returns, self.tree, bound=bound)
         if len(self.mirrored) and len(other.mirrored):
@@ -109,11 +124,9 @@ class Matcher(ABC):
 class DistanceMatcher(Matcher):
     """Matches attractors by the distance of their section returns.
 
-    scale : of the model, see `Model.scale`
     longest_period : longest period of orbits that are followed along a; longer ones count as a torus
     """
 
-    scale: float
     longest_period: float = REFINEMENT.longest_period
 
     def match(self, before: Mapping[int, Outline], after: Mapping[int, Outline]) -> dict[int, int]:
@@ -128,7 +141,8 @@ class DistanceMatcher(Matcher):
         chaos around it continue, the larger directed distance distinguishes them.
         """
         first, second = list(before), list(after)
-        largest = SAME_SET * self.scale
+        # All of a set of attractors are of one model.
+        largest = SAME_SET * max((item.attractor.model.scale for item in after.values()), default=1.0)
         cost = np.full((len(second), len(first)), 2.0 * largest)
         for row, column in np.ndindex(cost.shape):
             later, earlier = after[second[row]], before[first[column]]

@@ -1,4 +1,4 @@
-"""Values of a inserted between neighbours whose attractors differ, until each change is located."""
+"""Values of a parameter inserted between neighbours whose attractors differ, until each change is located."""
 
 from __future__ import annotations
 
@@ -21,13 +21,15 @@ Differing = tuple[list[int], list[int]]
 
 @dataclass(frozen=True, eq=False)
 class Gap:
-    """Two values of a without a known value in between.
+    """Two values of a parameter without a known value in between.
 
+    parameter : its name
     search : a search without attractors, with the settings for values in between
     first, last : models at both ends; before, after : attractors there that may differ, one of each mirror pair
     unchanged : other attractors, which are the same at both ends
     """
 
+    parameter: str
     search: Search
     first: Model
     last: Model
@@ -35,9 +37,15 @@ class Gap:
     after: Sequence[Attractor]
     unchanged: Sequence[Attractor]
 
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The values of the parameter."""
+        return self.first.parameter(self.parameter), self.last.parameter(self.parameter)
+
     def is_open(self, refine: RefinementSettings) -> bool:
         """Return whether attractors differ and the values are farther apart than the resolution."""
-        near = self.last.a - self.first.a <= refine.resolution * (1.0 + 1e-9)
+        low, high = self.ends
+        near = high - low <= refine.resolution * (1.0 + 1e-9)
         return bool(self.before or self.after) and not near
 
 
@@ -47,8 +55,9 @@ def refine_searches(
     matcher: Matcher,
     pool: ParallelMap,
     span: Span | None = None,
+    parameter: str = "a",
 ) -> list[list[Search]]:
-    """Return the searches at values of a inserted between each two neighbours of the grid, ascending.
+    """Return the searches at values of a parameter inserted between each two neighbours of the grid, ascending.
 
     refine : how closely changes are located
     pool, span : from `running.processes.parallel_map`, and see `ParallelMap`
@@ -59,7 +68,7 @@ def refine_searches(
     """
     middles: list[list[Search]] = [[] for _ in searches[1:]]
     differ = pool("neighbours compared", partial(_compare, matcher=matcher), searches[:-1], searches[1:])
-    gaps = [(k, _gap(*pair, *differ[k])) for k, pair in enumerate(pairwise(searches))]
+    gaps = [(k, _gap(parameter, *pair, *differ[k])) for k, pair in enumerate(pairwise(searches))]
 
     def halves(k: int, gap: Gap, halved: tuple[Search, Differing, Differing]) -> list[tuple[int, Gap]]:
         middle, low, high = halved
@@ -80,7 +89,7 @@ def refine_searches(
         halves,
         span,
     )
-    return [sorted(inner, key=lambda search: search.model.a) for inner in middles]
+    return [sorted(inner, key=lambda search: search.model.parameter(parameter)) for inner in middles]
 
 
 def _compare(left: Search, right: Search, matcher: Matcher) -> Differing:
@@ -91,7 +100,7 @@ def _compare(left: Search, right: Search, matcher: Matcher) -> Differing:
     return _differing(before, after, matcher)
 
 
-def _gap(left: Search, right: Search, before: Sequence[int], after: Sequence[int]) -> Gap:
+def _gap(parameter: str, left: Search, right: Search, before: Sequence[int], after: Sequence[int]) -> Gap:
     """Return the gap between two neighbours of the grid, from the indices of the attractors that differ."""
     # The attractors of the neighbours have settled nearby, so less work suffices. No states are labelled, so a few
     # small perturbations decide whether a motion attracts, and an ensemble decides whether chaos persists.
@@ -108,12 +117,13 @@ def _gap(left: Search, right: Search, before: Sequence[int], after: Sequence[int
     )
     unchanged = [k for k in outlines(left.attractors) if k not in before]
     ends = _select(left.attractors, before), _select(right.attractors, after)
-    return Gap(search, left.model, right.model, *ends, _select(left.attractors, unchanged))
+    return Gap(parameter, search, left.model, right.model, *ends, _select(left.attractors, unchanged))
 
 
 def _bisect(gap: Gap, matcher: Matcher) -> tuple[Search, Differing, Differing]:
     """Follow attractors at the middle of a gap; return the search there, and what differs below and above it."""
-    middle = replace(gap.search, model=gap.first.at(0.5 * (gap.first.a + gap.last.a)), attractors=[])
+    low, high = gap.ends
+    middle = replace(gap.search, model=gap.first.at(**{gap.parameter: 0.5 * (low + high)}), attractors=[])
     middle.find(middle.seeds([*gap.before, *gap.after]), check=False)
     sources, before, after = (
         {k: Outline(item) for k, item in enumerate(attractors)}

@@ -1,4 +1,4 @@
-"""Settings of the location of changes along a; fields and defaults are those of a study's config."""
+"""Settings of the location of changes along a parameter; fields and defaults are those of a study's config."""
 
 from __future__ import annotations
 

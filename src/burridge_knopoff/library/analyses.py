@@ -44,9 +44,7 @@ def _of_law(function: Callable[..., _T], *states: str) -> Callable[..., _T]:
         own = signature.bind_partial(None, *others, **{name: by_name.pop(name) for name in names if name in by_name})
         begin = {"start": by_name.pop("start", "moving")} if states else {}
         if isinstance(begin.get("start"), ChainState):
-            raise ValueError(
-                f"start: got a ChainState, expected {' | '.join(STARTS)}: a state is now state="
-            )
+            raise ValueError(f"start: got a ChainState, expected {' | '.join(STARTS)}: a state is now state=")
         if "loading" in names:
             begin["loading"] = own.arguments.get("loading", signature.parameters["loading"].default)
         given = own.arguments

@@ -95,7 +95,8 @@ def sweep(
         …, "position": …, "velocity": …}` or an `InitialState`
     by_name : other parameters, v, those of the chain such as coupling, or of one block or spring such as `mass[3]`, and
         the parameters of the law such as sigma, each one number or a sequence; and settings of the run by name
-    motion : thresholds of the kinds of motion, for v = 0.1; None leaves out `kind` and `period`
+    motion : thresholds of the kinds of motion, for v = 0.1; None leaves out `kind` and `period`, which take up to a
+        fifth of the time of a run of default length
     settings, chain, blocks, contact : see `simulate`
     cores : number of simultaneous runs, by default the number of cores; results do not depend on it
 
@@ -127,7 +128,7 @@ def sweep(
     parameters = {name: value for name, value in (("a", a), *parameters.items()) if value is not None}
     sizes = [state_blocks(state) for state in states.values()]
     shape = {"chain": chain, "blocks": blocks, "contact": contact, "state_blocks": sizes[0]}
-    grids = [_grid(item, parameters, shape) for item in laws]
+    grids = [parameter_grid(item, parameters, shape, Settings) for item in laws]
     axes: dict[str, list[Any]] = {}
     if is_sequence(law):
         names = [base.law.name for base, _ in grids]
@@ -158,8 +159,15 @@ def _different(values: list[_T], name: str, hint: str = "") -> list[_T]:
     return values
 
 
-def _grid(law: Any, parameters: Mapping[str, Any], shape: Mapping[str, Any]) -> tuple[Model, dict[str, list[float]]]:
-    """Return the model with all single-valued parameters, and the values of those given as sequences."""
+def parameter_grid(
+    law: Any, parameters: Mapping[str, Any], shape: Mapping[str, Any], settings: type
+) -> tuple[Model, dict[str, list[float]]]:
+    """Return the model with all single-valued parameters, and the values of those given as sequences.
+
+    shape : further arguments of `model_of`; settings : class of the settings of the call
+
+    Raises ValueError, one line, for a wrong argument, and for a value that occurs twice.
+    """
     axes: dict[str, list[Any]] = {
         name: values for name, value in parameters.items() if (values := elements(value)) is not None
     }
@@ -169,7 +177,7 @@ def _grid(law: Any, parameters: Mapping[str, Any], shape: Mapping[str, Any]) -> 
         if not values:
             raise ValueError(f"{full_key('', name)}: got no value, expected at least one")
     first = {name: axes[name][0] if name in axes else value for name, value in parameters.items()}
-    base = model_of(law, first.pop("a", None), **shape, parameters=first, settings=fields_of(Settings))
+    base = model_of(law, first.pop("a", None), **shape, parameters=first, settings=fields_of(settings))
     for name, values in axes.items():
         axes[name] = _different([base.at(**{name: value}).parameter(name) for value in values], name)
     return base, axes

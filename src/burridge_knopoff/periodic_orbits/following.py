@@ -81,29 +81,7 @@ def follow(
         spring such as `mass[3]` (`Model.at`)
     is_complete : called with all orbits so far after each orbit that does not graze; ends the branch if true
 
-    A grazing orbit is in the list with `is_grazing` set; the next orbit, if there is one, is on the other side. The
-    branch also ends where it joins a branch of simpler orbits, where steps become too short, and at the
-    `settings.max_orbits`-th orbit, or at the next one if that one grazes. If the parameter is then still within the
-    interval, the rest of the branch has not been followed.
-
-    Raises OrbitError if the continuation cannot start, for example if the orbit is outside the interval or if its
-    return has no derivative (see `multipliers`). Raises ValueError for an invalid interval or a name that is not a
-    parameter of the model.
-
-    Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493 (pseudo-arclength);
-    docs/bifurcations.md explains how a branch continues where its orbit grazes.
-
-    >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, synchronized_orbit
-    >>> model = Model(Chain(3), law_of("linearized", 0.0865))
-    >>> orbit = limit_cycle(model, synchronized_orbit(model).reference)
-    >>> branch = follow(orbit, (0.086, 0.0875))
-    >>> [round(point.orbit.a, 4) for point in branch]
-    [0.0865, 0.0866, 0.0868, 0.0872, 0.0877]
-    >>> [point.multipliers.unstable_count for point in branch]
-    [0, 0, 0, 1, 1]
-    >>> branch = follow(orbit, (0.9, 1.0), parameter="coupling", upward=False)
-    >>> round(branch[-1].value, 3) <= 0.9, branch[-1].orbit.a
-    (True, 0.0865)
+    The end of a branch, errors and the source are those of `burridge_knopoff.follow`, which takes a model as well.
     """
     low, high = interval_ends(interval)
     check_derivative(instance_of(orbit, PeriodicOrbit, "orbit"))

@@ -34,26 +34,46 @@ _T = TypeVar("_T")
 _R = TypeVar("_R")
 
 
+class LoggedShare:
+    """Logs the share of a job that is done, from time to time."""
+
+    def __init__(self) -> None:
+        self._reported = time.monotonic()
+
+    def __call__(self, share: float) -> None:
+        """Log the share unless the last one was logged a short time ago."""
+        if time.monotonic() - self._reported >= REPORTED:
+            self._reported = time.monotonic()
+            _LOG.info("progress %.3f", share)
+
+
 class ParallelMap:
     """Applies functions to many items, in parallel if there is a pool of processes.
 
-    pool : None if this process does all the work; folder, classes : see `parallel_map`
+    pool : None if this process does all the work; folder, classes, report : see `parallel_map`
 
     Functions, items and results must be picklable. A call must not rely on the side effects of another call.
     """
 
-    def __init__(self, pool: Executor | None, folder: str | Path | None, classes: Collection[type]) -> None:
+    def __init__(
+        self,
+        pool: Executor | None,
+        folder: str | Path | None,
+        classes: Collection[type],
+        report: Callable[[float], None] | None = None,
+    ) -> None:
         self._pool, self._folder, self._classes = pool, folder, classes
+        self._report_to = report or LoggedShare()
         self.asked: set[Path] = set()
         self._taken: list[tuple[float, bool]] = []
-        self._last, self._reported = "", time.monotonic()
+        self._last = ""
 
     def __call__(
         self, what: str, function: Callable[..., Any], *items: Sequence[Any], span: Span | None = None
     ) -> list[Any]:
         """Return the results of a function for the items of one or several sequences, in order.
 
-        span : fractions of the time of the whole job at which these calls begin and end, to log the progress
+        span : fractions of the time of the whole job at which these calls begin and end, to report the progress
 
         Calls begin with the last item: along a grid of a it takes longest, and no process then waits for it at the end.
         The time of the calls is logged in seconds; successive calls with the same `what` are logged together.
@@ -111,10 +131,9 @@ class ParallelMap:
             self._last = what
 
     def _report(self, span: Span | None, share: float) -> None:
-        """Log the progress of the job from time to time, from the share of these calls that are done."""
-        if span and time.monotonic() - self._reported >= REPORTED:
-            self._reported = time.monotonic()
-            _LOG.info("progress %.3f", span[0] + share * (span[1] - span[0]))
+        """Report the progress of the job, from the share of these calls that are done."""
+        if span:
+            self._report_to(span[0] + share * (span[1] - span[0]))
 
     def _begin(self, what: str) -> Path | None:
         self.log(what)
@@ -130,7 +149,10 @@ class ParallelMap:
 
 @contextmanager
 def parallel_map(
-    processes: int, folder: str | Path | None = None, classes: Collection[type] = ()
+    processes: int,
+    folder: str | Path | None = None,
+    classes: Collection[type] = (),
+    report: Callable[[float], None] | None = None,
 ) -> Iterator[ParallelMap]:
     """Yield a `ParallelMap`, which applies functions to many items in several processes at once.
 
@@ -139,15 +161,16 @@ def parallel_map(
     folder : cache of the results for later runs, see `running.cache`; None for no cache. Cached results that were not
         used by any call are deleted at the end
     classes : of the objects that may occur in cached results
+    report : called with the share of the job that is done; by default it is logged
     """
     # macOS does not allow fork once libraries have threads, and a new interpreter would run the caller's script again.
     if processes == 1 or sys.platform == "darwin":
-        yield (apply := ParallelMap(None, folder, classes))
+        yield (apply := ParallelMap(None, folder, classes, report))
     else:
         context = get_context("fork")
         receiver, sender = context.Pipe(duplex=False)
         with receiver, sender, ProcessPoolExecutor(processes, context, _end_with_parent, (receiver,)) as pool:
-            apply = ParallelMap(pool, folder, classes)
+            apply = ParallelMap(pool, folder, classes, report)
             try:
                 yield apply
             except KeyboardInterrupt:

@@ -16,19 +16,18 @@ import xarray
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.labels import UNDETERMINED, label
 from burridge_knopoff.attractors.settings import SearchSettings
-from burridge_knopoff.attractors.table import NOTHING, slot_values, slot_variables
+from burridge_knopoff.attractors.table import NOTHING
 from burridge_knopoff.continuation.attractor_continuation import Continuation
 from burridge_knopoff.dataset.columns import empty_columns
 from burridge_knopoff.dataset.summary import axes, summary
-from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
+from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import CONTACTS, STARTS, Model
-from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.motion.period import count_distinct
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.section import Section
 from burridge_knopoff.summaries.attractor_observables import follow_attractor
-from burridge_knopoff.summaries.equilibrium import is_sliding_attracting
+from burridge_knopoff.summaries.branches_along import branch_values, branch_variables
 
 _SLOT = ("a", "attractor")
 _REACHED = ("contact", "start", "initial", "a")
@@ -40,45 +39,7 @@ CORNERS = 64
 _V = Variable
 ALONG_COMMENT = {"comment": "known for attractors that an initial state of the study reaches under some convention"}
 VARIABLES = {
-    **slot_variables("a"),
-    "upward_branch": _V(
-        _SLOT,
-        "i2",
-        "branch reached at the next larger a: from the attractor, at the next larger a of the grid",
-        NOTHING,
-    ),
-    "downward_branch": _V(
-        _SLOT,
-        "i2",
-        "branch reached at the next smaller a: from the attractor, at the next smaller a of the grid",
-        NOTHING,
-    ),
-    "basin_count": _V(
-        _SLOT, "i4", "states in the basin: number of sampled initial states that reach the attractor", nothing=0
-    ),
-    "basin_fraction": _V(
-        _SLOT,
-        "f8",
-        "basin fraction: fraction of the sampled initial states that reach the attractor",
-        {"comment": "if chaos is transient, the fraction of its successor grows with the time states are followed"},
-    ),
-    "basin_fraction_low": _V(_SLOT, "f8", "lower end of the basin fraction: of its 95 % Wilson interval"),
-    "basin_fraction_high": _V(_SLOT, "f8", "upper end of the basin fraction: of its 95 % Wilson interval"),
-    "sample_count": _V(
-        ("a",), "i4", "number of sampled states: initial states drawn for the basin fractions", nothing=0
-    ),
-    "undetermined_count": _V(
-        ("a",),
-        "i4",
-        "number of undetermined states: sampled initial states that reach no attractor by label_limit",
-        nothing=0,
-    ),
-    "sliding_attracts": _V(
-        ("a",),
-        "i1",
-        "uniform sliding attracts: whether uniform sliding, which has no stops and is not searched for, attracts",
-        YES_OR_NO,
-    ),
+    **branch_variables("a"),
     "initial_branch": _V(_REACHED, "i2", "branch reached: by an initial state under each convention", NOTHING),
     "initial_side": _V(_REACHED, "i1", "side of that branch", nothing=0),
     "section_count": _V(
@@ -133,10 +94,7 @@ def one_law(
     start : convention for the sampled states
     """
     models = [continuation.models[k] for k in continuation.grid]
-    values = slot_values(models, [continuation.rows(k) for k in continuation.grid], settings.lifetime, "a")
-    values.update(_basin_fractions(continuation))
-    values["sliding_attracts"] = np.array([is_sliding_attracting(model) for model in models])
-    values.update(_neighbour_branches(continuation))
+    values = branch_values(continuation, settings.lifetime)
     values.update(_initial_branches(continuation, initial, settings.label_limit))
     values.update(_observables(continuation, values["initial_branch"], values["initial_side"], motion.section))
     values.update(_rounded_branches(continuation, initial, settings.label_limit, start))
@@ -173,42 +131,6 @@ def search_attributes(model: Model, settings: SearchSettings, motion: MotionSett
     }
 
 
-def _basin_fractions(continuation: Continuation) -> dict[str, np.ndarray]:
-    """Return how many of the sampled states reach each attractor, and their fraction with its interval."""
-    values = empty_columns(
-        VARIABLES,
-        {"a": len(continuation.grid), "attractor": max(1, *map(len, continuation.attractors))},
-        "basin",
-        "undet",
-        "sample_count",
-    )
-    for k, (place, reached) in enumerate(zip(continuation.grid, continuation.samples, strict=True)):
-        values["sample_count"][k] = len(reached)
-        values["undetermined_count"][k] = np.count_nonzero(reached == UNDETERMINED)
-        for slot, row in enumerate(continuation.rows(place)):
-            hits = int(np.count_nonzero(reached == row.index))
-            values["basin_count"][k, slot] = hits
-            interval = fraction_interval(hits, len(reached))
-            for name, value in zip(("", "_low", "_high"), interval, strict=True):
-                values[f"basin_fraction{name}"][k, slot] = value
-    return values
-
-
-def _neighbour_branches(continuation: Continuation) -> dict[str, np.ndarray]:
-    """Return the branch that each attractor leads to at the next larger and smaller a of the grid."""
-    values = {}
-    for name, step, following in (("upward", 1, continuation.upward), ("downward", -1, continuation.downward)):
-        values[f"{name}_branch"] = np.full(
-            (len(continuation.grid), max(1, *map(len, continuation.attractors))), UNDETERMINED, dtype="i2"
-        )
-        for k, place in enumerate(continuation.grid):
-            for slot, row in enumerate(continuation.rows(place)):
-                if following[k][row.index] != UNDETERMINED:
-                    branch = continuation.branch[continuation.grid[k + step]]
-                    values[f"{name}_branch"][k, slot] = branch[following[k][row.index]]
-    return values
-
-
 def _initial_branches(
     continuation: Continuation, states: Sequence[InitialState], label_limit: float
 ) -> dict[str, np.ndarray]:
@@ -233,7 +155,7 @@ def _observables(
     """
     sizes = {
         "a": len(continuation.grid),
-        "attractor": max(1, *map(len, continuation.attractors)),
+        "attractor": continuation.most_attractors,
         "block": continuation.models[0].blocks,
     }
     values = empty_columns(VARIABLES, sizes, "section_count", "section_velocity", "velocity_")

@@ -64,7 +64,7 @@ def merge(
     for name, item in variables.items():
         arrays = [part[name].values for part in parts]
         if name.endswith("branch"):
-            arrays = [_renumber(array, renamed) for array, renamed in zip(arrays, numbers, strict=True)]
+            arrays = [renumber(array, renamed) for array, renamed in zip(arrays, numbers, strict=True)]
         shape = np.max([array.shape for array in arrays], axis=0)
         values[name] = np.full((len(parts), *shape), item.missing, dtype=item.dtype)
         for number, array in enumerate(arrays):
@@ -168,7 +168,7 @@ def common_branch_names(refined: xarray.Dataset, attractors: xarray.Dataset) -> 
     return refined.assign(branch_name=refined["branch_name"].copy(data=[names[number] for number in numbers]))
 
 
-def _renumber(branch: np.ndarray, renamed: Mapping[int, int]) -> np.ndarray:
+def renumber(branch: np.ndarray, renamed: Mapping[int, int]) -> np.ndarray:
     """Return the branches with their new numbers; undetermined branches stay undetermined."""
     result = np.full_like(branch, UNDETERMINED)
     for before, after in renamed.items():

@@ -1,0 +1,124 @@
+"""The attractors of a model along a parameter in one call; in a study the stage `attractors` follows them along a."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from burridge_knopoff.attractors.settings import SearchSettings
+from burridge_knopoff.continuation import attractor_continuation
+from burridge_knopoff.continuation.settings import RefinementSettings
+from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings, takes_model
+from burridge_knopoff.library.model_forms import GivenLaw
+from burridge_knopoff.library.progress import Progress, progress_bar
+from burridge_knopoff.library.state_forms import Initial, state_blocks, state_in
+from burridge_knopoff.library.sweep import parameter_grid
+from burridge_knopoff.messages import refusal
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.fields import fields_of
+from burridge_knopoff.model.model import STARTS, Model
+from burridge_knopoff.model.ranges import OneOf, Whole
+from burridge_knopoff.motion.settings import MOTION, MotionSettings
+from burridge_knopoff.running.cores import available_cores
+from burridge_knopoff.values import elements, instance_of
+
+if TYPE_CHECKING:
+    import xarray
+
+
+@takes_model
+@show_settings(SearchSettings)
+def continue_attractors(
+    law: Model | GivenLaw,
+    a: float | Sequence[float] | np.ndarray | None = None,
+    settings: SearchSettings | None = None,
+    motion: MotionSettings = MOTION,
+    *,
+    refine: float | None = None,
+    starts: Sequence[Initial] = (),
+    start: str = "moving",
+    chain: Chain | None = None,
+    blocks: int | None = None,
+    contact: str | None = None,
+    cores: int | None = None,
+    progress: Progress = False,
+    **by_name: Any,
+) -> xarray.Dataset:
+    """Return the attractors along a, or along another parameter, with their branches, basin fractions and changes.
+
+    law, chain, blocks, contact : see `simulate`
+    a : friction parameters, shape (n,), or one number; by default that of a `Model` or a `Law`
+    by_name : other parameters as in `sweep`, one of them a sequence if a is not; and settings of the search by name
+        (see `SearchSettings`)
+    settings, motion, starts, start : see `find_attractors`
+    refine : distance to which changes are located in the parameter; by default a tenth of the smallest step between the
+        given values
+    cores : number of simultaneous processes, by default the number of cores; results do not depend on it
+    progress : True for a bar, in a terminal or a notebook, if rich or tqdm is installed; "always" for one in a pipe too
+
+    The attractors at each value are searched for from initial states, and from the attractors at the neighbouring
+    values. The Dataset has the variables of `attractors.nc` and `bifurcations.nc` (docs/data.md), with the parameter
+    in place of a, that of `mass[3]` as `mass_3`, in ascending order: over it and the slot `attractor`, among them
+    `branch`, `side`, `kind`, `mean_distance` and `basin_fraction`, with its interval; and over `bifurcation`, the
+    changes of the branches, each between `grid_low` and `grid_high`. Branches are matched by the distance of their
+    returns at neighbouring values, and for different v also by the distance relative to v. The states of the basin
+    fractions are the same at all values of a parameter other than a. Raises ValueError, one line, for a wrong argument.
+
+    Source: G. Datseris, K. Luiz Rossi and A. Wagemakers, Chaos 33 (2023) 073151.
+
+    >>> from burridge_knopoff import continue_attractors
+    >>> quick = {"samples": 12, "fraction_width": 0.2, "transient": 1000, "window": 800}
+    >>> data = continue_attractors("linearized", [0.08, 0.09], refine=0.01, cores=1, **quick)
+    >>> data.branch.values.tolist(), data.branch_name.values[:2].tolist()
+    ([[0, 1, 2, -1], [1, 2, 3, 3]], ['synchronized', 'alternating (1)'])
+    >>> data.from_branch.values.tolist(), data.to_branch.values.tolist()
+    ([0, 1, 0], [3, 1, 3])
+    """
+    named, parameters = divide(by_name, SearchSettings)
+    chosen = settings_of(SearchSettings, settings, named)
+    instance_of(motion, MotionSettings, "motion")
+    OneOf(STARTS).form(start, "start")
+    cores = available_cores() if cores is None else Whole(1, 1024).form(cores, "cores")
+    given = elements(starts)
+    if given is None:
+        raise refusal("starts", starts, "a list of initial states")
+    shape = {"chain": chain, "blocks": blocks, "contact": contact}
+    shape["state_blocks"] = state_blocks(given[0], "starts[0]") if given else 3
+    parameters = {name: value for name, value in (("a", a), *parameters.items()) if value is not None}
+    base, axes = parameter_grid(law, parameters, shape, SearchSettings)
+    if len(axes) != 1:
+        raise ValueError(f"a: got {len(axes)} parameters with several values, expected one, a or another")
+    states = [state_in(base, state, f"starts[{number}]") for number, state in enumerate(given)]
+    ((parameter, values),) = axes.items()
+    values.sort()
+    steps = np.diff(values)
+    if refine is None:
+        refinement = RefinementSettings(0.1 * float(steps.min())) if len(steps) else RefinementSettings()
+    else:
+        refinement = RefinementSettings(fields_of(RefinementSettings)["resolution"].range.form(refine, "refine"))
+    models = [base.at(**{parameter: value}) for value in values]
+    # Imported here so that xarray is loaded only for a Dataset.
+    from burridge_knopoff.summaries.attractors_along import summarize
+
+    with progress_bar(progress, 1.0, "continue_attractors") as advance:
+        done = 0.0
+
+        def report(share: float) -> None:
+            nonlocal done
+            advance(share - done)
+            done = share
+
+        continuation = attractor_continuation.continue_attractors(
+            models,
+            chosen,
+            motion,
+            refinement,
+            parameter=parameter,
+            starts=states,
+            start=start,
+            processes=cores,
+            report=report,
+        )
+    return summarize(continuation, chosen, motion, refinement, start)

@@ -1,0 +1,85 @@
+"""A branch of orbits from a model or a law, compared with the branch from the orbit itself."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import (
+    Chain,
+    ContinuationSettings,
+    Model,
+    OrbitError,
+    Symmetry,
+    follow,
+    law_of,
+    limit_cycle,
+    locate_bifurcations,
+    simulate,
+)
+from tests.refused import refused
+
+MODEL = Model(Chain(3), law_of("linearized", 0.08))
+ENDS = (0.0799, 0.0802)
+
+
+@pytest.fixture(scope="module")
+def orbit():
+    return limit_cycle(MODEL, simulate(MODEL, initial="plus", transient=1000, window=10).final)
+
+
+def values(branch):
+    return [(point.value, point.orbit.period) for point in branch]
+
+
+def test_a_model_or_a_law_gives_the_branch_of_the_orbit_on_which_the_motion_settles(orbit):
+    """In every form of model, state and interval; the period is that of the orbit to rounding."""
+    steps = ContinuationSettings(largest_step=1e-4)
+    expected = np.array(values(follow(orbit, ENDS, steps)))
+    run = simulate(MODEL, initial="plus", transient=0, window=10)
+    for branch in (
+        follow("linearized", 0.08, ENDS, steps, initial="plus"),
+        follow(MODEL, ENDS, steps, initial=run),
+        follow(MODEL, interval=ENDS, settings=steps, initial=run.final, settling=2000.0),
+        follow(law_of("linearized", 0.08), ENDS, settings=steps, initial="plus", chain=Chain(3)),
+        follow({"formula": "1 - a*u"}, 0.08, ENDS, steps, initial="plus", blocks=3, v=0.1),
+    ):
+        np.testing.assert_allclose(values(branch), expected, atol=1e-9)
+
+
+def test_each_state_leads_to_the_branch_of_its_attractor():
+    """Synchrony, which loses stability at a = 0.0870, and the alternating orbit, which grazes at 0.0813."""
+    steps = ContinuationSettings(largest_step=2.5e-3)
+    for initial, symmetry, at in (("minus", Symmetry.SYNCHRONIZED, 0.086973), ("plus", Symmetry.SYMMETRIC, 0.081329)):
+        branch = follow("linearized", 0.08, (0.08, 0.088), steps, initial=initial)
+        assert branch[0].orbit.symmetry == symmetry
+        assert next(iter(locate_bifurcations(branch))).a == pytest.approx(at, abs=1e-6)
+
+
+def test_the_parameters_of_the_law_are_those_of_the_orbit():
+    branch = follow("stribeck", 0.05, (0.98, 1.0), initial="minus", sigma=0.2, parameter="coupling", upward=False)
+    assert branch[0].orbit.model.law.parameters["sigma"] == 0.2
+    assert branch[-1].value <= 0.98
+
+
+def test_a_motion_that_has_not_settled_is_on_no_orbit():
+    with pytest.raises(OrbitError, match="no periodic orbit"):
+        follow(MODEL, ENDS, initial="plus", settling=0.0)
+
+
+@pytest.mark.parametrize(
+    ("call", "place"),
+    [
+        (lambda orbit: follow(MODEL, ENDS), "initial"),
+        (lambda orbit: follow("linearized", 0.08, ENDS), "initial"),
+        (lambda orbit: follow("linearized", None, ENDS, initial="plus"), "a"),
+        (lambda orbit: follow(orbit, ENDS, initial="plus"), "initial"),
+        (lambda orbit: follow(orbit, ENDS, v=0.2), "v"),
+        (lambda orbit: follow(orbit, ENDS, ENDS), "interval"),
+        (lambda orbit: follow(MODEL, ENDS, interval=ENDS, initial="plus"), "interval"),
+        (lambda orbit: follow(MODEL, ENDS, initial="plus", chain=Chain(3)), "chain"),
+        (lambda orbit: follow(MODEL, ENDS, initial="plus", sigma=0.1), "sigma"),
+        (lambda orbit: follow(orbit, 0.08), "interval"),
+    ],
+)
+def test_arguments_that_do_not_go_together_are_refused(orbit, call, place):
+    with refused(place):
+        call(orbit)
