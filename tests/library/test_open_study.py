@@ -6,6 +6,7 @@ import subprocess
 import sys
 from importlib.util import find_spec
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -161,6 +162,13 @@ def test_a_run_that_stopped_early_is_missing_after_its_end(results, tmp_path, mo
     assert (stopped.distance.isnull() == (stopped.time > stopped.end_time)).all()
     assert stopped.velocity.isnull().all()
     assert points.mean_distance.where(points.status == 0).count() == 10
+
+
+def test_a_notebook_shows_the_same_as_a_table(results):
+    study = open_study(results)
+    table = ElementTree.fromstring(f"<div>{study._repr_html_()}</div>")
+    shown = ["".join(cell.itertext()) for cell in table.iter() if cell.tag in ("caption", "td", "p")]
+    assert re.findall(r"[^<>\s]+", " ".join(shown)) == re.findall(r"[^<>\s]+", repr(study))
 
 
 def test_files_are_opened_on_request(results, tmp_path):

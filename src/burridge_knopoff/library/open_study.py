@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from html import escape
 from pathlib import Path
 from textwrap import shorten
 
@@ -12,15 +13,17 @@ import xarray
 
 from burridge_knopoff.dataset.point import with_run_coordinates
 from burridge_knopoff.dataset.variables import NETCDF_LOCK
+from burridge_knopoff.library.combined_points import combine_points
 from burridge_knopoff.messages import escape_unprintable, refusal
 from burridge_knopoff.outputs import study_files
 from burridge_knopoff.study.integrity import check_file
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import all_points
-from burridge_knopoff.summaries.points import combine_points
 
 #: Length of a title in a list of summaries.
 LONGEST = 70
+
+_HOW = 'Open a part by its path, such as study["summary/runs"]; study.points() is all points, study.config the config.'
 
 
 def open_study(results: str | Path) -> StudyResults:
@@ -112,21 +115,25 @@ class StudyResults(Mapping[str, xarray.DataTree]):
             return combine_points(self._study, self._results, names)
 
     def __repr__(self) -> str:
+        head, *rows = self._listing()
+        width = max(len(name) for name, _ in rows)
+        return "\n".join([f"<{head[0]} in {head[1]}>", *(f"{name:{width}}  {text}" for name, text in rows), _HOW])
+
+    def _repr_html_(self) -> str:
+        """Return the same as a table, for notebooks."""
+        head, *rows = ([escape(text) for text in row] for row in self._listing())
+        lines = "".join(f"<tr><td><code>{name}</code></td><td>{text}</td></tr>" for name, text in rows)
+        return f"<table><caption>{head[0]} in <code>{head[1]}</code></caption>{lines}</table><p>{escape(_HOW)}</p>"
+
+    def _listing(self) -> list[tuple[str, str]]:
+        """Return the study with its folder, then each path with what it contains."""
         sizes = ", ".join(f"{name} {len(values)}" for name, values in self._study.parameters.items())
         count = sum(map(self._has, self._points))
         form = re.sub(r"\{(\w+)\}", r"<\1>", self._study.point_file).removesuffix(".nc")
         over = f"over law {len(self._study.laws)}, initial {len(self._study.initial)}, {sizes}"
         points = f"{count} of {len(self._points)} points {over}, such as {next(iter(self._points))}"
-        rows = [(f"points/{form}", points)]
-        rows += [(name, self._title(name)) for name in self._summaries if self._has(name)]
-        width = max(len(name) for name, _ in rows)
-        return "\n".join(
-            [
-                f"<study {self._study.name} in {self._results}>",
-                *(f"{name:{width}}  {text}" for name, text in rows),
-                'Open a part by its path, such as study["summary/runs"]; study.config is the config.',
-            ]
-        )
+        summaries = [(name, self._title(name)) for name in self._summaries if self._has(name)]
+        return [(f"study {self._study.name}", str(self._results)), (f"points/{form}", points), *summaries]
 
     def _full_name(self, path: str) -> str:
         """Return the path of a point whose values have zeros left out at their ends; any other path as it is."""
