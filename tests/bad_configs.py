@@ -92,7 +92,6 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     # Grids.
     "no_values": (f"study: x\na: []\n{STATES}", ["a: []", "at least 1"]),
     "large_a": (f"study: x\na: [0.1, 101]\n{STATES}", ["a[1]: 101", " 100"]),
-    "value_twice": (f"study: x\na: [0.1, {{from: 0, to: 0.2, step: 0.1}}]\n{STATES}", ["a: 0.1 twice"]),
     "one_name": (
         f"study: x\na: [0.1, 0.10001]\n{STATES}",
         ["a: got 0.1 and 0.10001, which share the file name a0.1000.nc", "a_digits"],
@@ -139,7 +138,7 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "formula_start": (f"{GOOD}laws: {{m: {{formula: 1.1 - a*u}}}}\n", ["laws.m: ", "its value at u = 0 is 1.1"]),
     "formula_none": (f"{GOOD}laws: {{m: {{formula: a*u}}}}\n", ["laws.m: ", "its value at u = 0 is 0"]),
     "formula_pole_for_two_blocks": (
-        f"{GOOD}laws: {{m: {{formula: 1/(1 - 0.3*a*u)}}}}\n",
+        f"{GOOD}laws: {{m: {{formula: 1/(1 - 0.3*a*u)}}}}\nchains: {{two_blocks: {{}}}}\n",
         ["chains.two_blocks.a: got 0.34, at which ", "laws.m: ", "at a = 0.34", "not analytic"],
     ),
     "formula_pole": (f"{GOOD}laws: {{m: {{formula: 1/(1 - a*u)}}}}\n", ["laws.m: ", "at a = 0.1", "not analytic"]),

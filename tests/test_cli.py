@@ -12,9 +12,11 @@ import netCDF4
 import pytest
 
 from burridge_knopoff import Chain, FormulaLaw, Model, Settings, law_of, simulate
-from burridge_knopoff.cli import main
+from burridge_knopoff.cli import build_parser, main
+from burridge_knopoff.cli.options import simulated_law
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.study.formatting import to_ascii, with_error
+from burridge_knopoff.study.load import load_study
 
 BK = str(Path(sys.executable).parent / "bk")
 SHORT = ["--transient", "10", "--window", "20", "--batches", "2"]
@@ -89,6 +91,33 @@ def test_a_custom_law_in_a_ring(tmp_path):
     again = tmp_path / "again.nc"
     assert main([*words[1:], "--out", str(again)]) == 0
     assert again.read_bytes() == out.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("law", "numbers"),
+    [
+        ({"law": "carlson_langer"}, {"sigma": 0.02}),
+        ({"law": "stribeck"}, {"sigma": 0.1, "eta": 0.3}),
+        ({"formula": "1 - c*tanh(a*u/c)"}, {"c": 0.3}),
+    ],
+)
+def test_the_numbers_of_a_law_have_one_name_in_python_a_config_and_a_command(law, numbers):
+    settings = {"transient": 1.0, "window": 1.0, "batches": 2, "lyapunov_exponents": 0}
+    expected = simulate(law, 0.1, "minus", **settings, **numbers).model.law
+    assert dict(expected.parameters) == numbers
+    ((kind, words),) = law.items()
+    options = [word for name, value in numbers.items() for word in ("--number", f"{name}={value}")]
+    command = ["simulate", f"--{kind}", words, *options, "--law-name", expected.name, "--a", "0.1", "--out", "x.nc"]
+    assert simulated_law(build_parser().parse_args(command)) == expected
+    config = {"study": "x", "initial": {"minus": {}}}
+    study = load_study({**config, "a": [0.1], "laws": {expected.name: {**law, **numbers}}}, "x.yaml")
+    assert study.model(expected.name, 0.1).law == expected
+    # As parameters of a grid.
+    grid = {"a": [0.1], **{name: [value] for name, value in numbers.items()}}
+    plane = load_study(
+        {**config, "grid": grid, "laws": {expected.name: {**law, **dict.fromkeys(numbers, 0.2)}}}, "x.yaml"
+    )
+    assert plane.model(expected.name, 0.1, **plane.other_values[0]).law == expected
 
 
 def test_parameters_and_another_name_of_a_built_in_law(tmp_path):
@@ -225,6 +254,8 @@ def test_no_events(tmp_path):
         ([*OWN, "", "--out", "x.nc"], "not a formula"),
         ([*OWN, "__import__('os')", "--out", "x.nc"], "not a formula"),
         ([*OWN, "1 - a*u", "--number", "u=1", "--out", "x.nc"], "formula.u: "),
+        ([*OWN, "1 - window*u", "--number", "window=1", "--out", "x.nc"], "window: "),
+        ([*OWN, "1 - samples*u", "--number", "samples=1", "--out", "x.nc"], "samples: "),
         ([*OWN, "1 - a*u", "--number", "self=1", "--out", "x.nc"], "formula.self: "),
         ([*RUN, "--coupling", "1,2,3", "--out", "x.nc"], "chain.coupling: "),
         ([*RUN, "--coupling", "-1,2", "--out", "x.nc"], "chain.coupling[0]: -1.0"),

@@ -12,6 +12,7 @@ pytestmark = pytest.mark.slow
 
 #: Headings of these sections, and how many outputs there are below each.
 SHORT = {
+    "model.md": {"Units": 1},
     "attractors.md": {"What lies on the boundaries": 1},
     "bifurcations.md": {"Bifurcation curves in two parameters": 2},
     "continuum.md": {"The size of the blocks, and dashpots that remove most of its effect": 1},

@@ -1,7 +1,8 @@
-"""docs/results.md: its chart is Snakemake's graph of rules, and it has a question for every summary."""
+"""docs/results.md: its chart is Snakemake's graph of rules, which fits a screen, and each summary has a question."""
 
 import re
 import runpy
+from graphlib import TopologicalSorter
 
 import pytest
 
@@ -17,6 +18,23 @@ def test_the_chart_is_that_of_the_rules(repository):
     assert rules["chart"](graph) in page
     # Arrows that must be present: from points to figures, and from attractors to basins.
     assert {("simulate", "figures"), ("attractors", "basins"), ("claims", "report")} <= rules["arrows"](graph)
+
+
+@pytest.mark.slow
+def test_the_graph_of_all_rules_from_left_to_right_fits_a_screen(repository):
+    """As Graphviz draws it, in points of 1/72 inch: its ranks, half an inch apart, with the longest name in each."""
+    graph = runpy.run_path(str(repository / "docs/rules.py"))["rule_graph"]()
+    names = dict(re.findall(r"(id\d+)\[(\w+)\]", graph))
+    needs = {rule: set() for rule in names}
+    for source, target in re.findall(r"(id\d+) --> (id\d+)", graph):
+        needs[target].add(source)
+    rank, widest = {}, {}
+    for rule in TopologicalSorter(needs).static_order():
+        rank[rule] = max((rank[need] + 1 for need in needs[rule]), default=0)
+        widest[rank[rule]] = max(widest.get(rank[rule], 0), len(names[rule]))
+    assert len(names) > 40
+    # A letter of 10 points is 6 points wide. A screen of 1,440 pixels, 96 to the inch, is 1,080 points wide.
+    assert sum(6 * letters + 16 for letters in widest.values()) + 36 * (len(widest) - 1) < 1080
 
 
 @pytest.mark.slow

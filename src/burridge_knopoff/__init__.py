@@ -3,11 +3,18 @@
 Import the public names from here. `help` of each name gives shapes, units, errors and an example.
 
 Model: `Model` is a `Chain` under a friction `Law`. `law_of` returns the built-in laws, and `FormulaLaw` is a law given
-by a formula. A run begins at an `InitialState`; a `ChainState` is the state at a later time.
+by a formula. A run begins at an `InitialState`; a `ChainState` is the state at a later time. `PhysicalUnits` converts
+a physical system to the model and back.
+
+Every function of a model takes a `Model`, or a law and a with everything else by name: `chain` or `blocks`, v, contact,
+parameters of the law and of the chain. Every state may be one of the paper's names, an `InitialState`, its numbers, a
+`ChainState` or a `Run`, which stands for its final state.
 
 Runs: `simulate` returns a `Run`, whose `Trajectory` is computed with `Settings` and seen on a `Section`. `sweep`
 computes many runs over any parameters. `open_study` opens the results of a study, and `decode_flags` translates the
 values of a flag.
+
+Pictures: `plot` draws each of these results, and all those below, as the figures of a study.
 
 Slip events: `record_events` and `Run.catalogue` return a `Catalogue` with the `SlipEvents` of a run. `fit_slope` fits
 the `Slope` of their magnitudes. `event_multipliers` and `event_exponents` return the multipliers and the

@@ -28,6 +28,7 @@ from .library.continue_attractors import continue_attractors as continue_attract
 from .library.find_attractors import find_attractors as find_attractors
 from .library.follow import follow as follow
 from .library.open_study import open_study as open_study
+from .library.plot import plot as plot
 from .library.run import Run as Run
 from .library.simulate import simulate as simulate
 from .library.sweep import sweep as sweep
@@ -35,6 +36,7 @@ from .model.chain import Chain as Chain
 from .model.initial import InitialState as InitialState
 from .model.model import ChainState as ChainState
 from .model.model import Model as Model
+from .model.physical_units import PhysicalUnits as PhysicalUnits
 from .motion.kind import MotionKind as MotionKind
 from .motion.modes import ModeAmplitudes as ModeAmplitudes
 from .motion.observables import SteadyMotion as SteadyMotion

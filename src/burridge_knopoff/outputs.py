@@ -119,7 +119,9 @@ def _no_proof(study: Study) -> str:
 
 
 def _no_pair(study: Study) -> str:
-    return length_refusal(study) or condition_refusal(study, "has_several_laws")
+    words = "no comparison for two blocks: add `chains: {two_blocks: {}}` to its config"
+    reason = length_refusal(study) or condition_refusal(study, "has_several_laws")
+    return reason or ("" if "two_blocks" in study.config["chains"] else words)
 
 
 def _meets(condition: str) -> Callable[[Study], str]:

@@ -64,7 +64,7 @@ def work_of(study: Study) -> dict[str, float]:
     """Return {rule: amount of work of one of its jobs}, each in its own unit; other rules read or draw "all points"."""
     config, laws, values = study.config, len(study.laws), len(study.grid)
     search, basins, phases, chains = (config[name] for name in ("attractors", "basins", "phases", "chains"))
-    pair, time = chains["two_blocks"], config["transient"] + config["window"]
+    pair, time = chains.get("two_blocks", {"a": [], "samples": 0}), config["transient"] + config["window"]
     swept = [len(phases[name]) for name in ("a", "inner_share", "amplitude", "phase_difference")]
     return {
         "all points": len(all_points(study)),

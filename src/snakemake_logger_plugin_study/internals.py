@@ -84,6 +84,11 @@ def run_in_thread(rule: Any, command: str) -> None:
     rule.rule.shellcmd = command
 
 
+def describe(rule: Any, words: str) -> None:
+    """Describe a rule that is made in a loop: a docstring, which --list-rules prints, would be the same for all."""
+    rule.rule.docstring = words
+
+
 def planned_jobs(workflow: Any) -> Iterator[tuple[int, Any, list[int]]]:
     """Yield number, job and the numbers of the jobs that it waits for, of all jobs that will make files.
 

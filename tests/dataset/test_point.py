@@ -7,15 +7,28 @@ import sys
 from dataclasses import fields
 from pathlib import Path
 
+import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
 
 from burridge_knopoff import simulate
-from burridge_knopoff.dataset.point import POINT_VARIABLES, point_attributes, write_point
-from burridge_knopoff.laws import FormulaLaw
+from burridge_knopoff.dataset.point import (
+    POINT_VARIABLES,
+    point_attributes,
+    point_values,
+    run_coordinates,
+    with_run_coordinates,
+    write_point,
+)
+from burridge_knopoff.dataset.variables import write_variables
+from burridge_knopoff.laws import FormulaLaw, law_of
 from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.running.trajectory import Trajectory
+
+#: The scalar coordinates of a run of the paper's chain under its own laws.
+SCALARS = "law initial coupling threshold mass damping pulling_damping a v"
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +45,7 @@ def path(trajectory, tmp_path):
 def test_the_file_and_the_dataset_have_the_same_content(trajectory, path):
     with xr.open_dataset(path) as file:
         xr.testing.assert_identical(file.load().drop_attrs(deep=True), trajectory.to_dataset().drop_attrs(deep=True))
-        assert set(file.variables) == set(POINT_VARIABLES)
+        assert set(file.variables) == {*POINT_VARIABLES, *run_coordinates(file.attrs)}
         assert (file.attrs["law"], file.attrs["law_formula"]) == ("linearized", "1 - a*u")
         assert (file.attrs["chain_coupling"], file.attrs["chain_pulling"]) == (1.0, "neighbours")
         assert (file.attrs["chain_threshold"], file.attrs["chain_ends"]) == (1.0, "open")
@@ -43,17 +56,50 @@ def test_the_file_and_the_dataset_have_the_same_content(trajectory, path):
         assert file["batch"].values.tolist() == [125.0, 175.0, 225.0, 275.0]
         assert file["status"].item() == 0
         for name, coordinates in {
-            "mean_distance": "a v",
-            "event_position": "event_time a v",
-            "distance": "time a v",
+            "mean_distance": SCALARS,
+            "event_position": f"event_time {SCALARS}",
+            "distance": f"time {SCALARS}",
         }.items():
             assert file[name].encoding["coordinates"] == coordinates
         for name, dimensions in {"position": ("trajectory_time", "block"), "batch_mean_distance": ("batch",)}.items():
             assert file[name].dims == dimensions
-            assert file[name].encoding["coordinates"] == "a v"
+            assert file[name].encoding["coordinates"] == SCALARS
         for name, variable in file.variables.items():
             assert variable.attrs["long_name"], name
             assert "_FillValue" not in variable.encoding, name
+
+
+@pytest.mark.parametrize(
+    ("law", "chain", "numbers"),
+    [
+        ({}, {}, {"coupling": 1.0, "threshold": 1.0, "mass": 1.0, "damping": 0.0, "pulling_damping": 0.0}),
+        (
+            {"law": "stribeck", "sigma": 0.3},
+            {"coupling": (1.0, 1.1), "pulling": 0.5, "mass": 1.2, "damping": 0.1},
+            {"sigma": 0.3, "eta": 0.2, "pulling": 0.5, "threshold": 1.0, "mass": 1.2}
+            | {"damping": 0.1, "pulling_damping": 0.0},
+        ),
+        # These names have other meanings in a file.
+        (
+            {"formula": "1 - a*u + 0*(event + time + initial + mass)", "event": 1, "time": 2, "initial": 3, "mass": 4},
+            {"threshold": "uniform 0.9 1.1 seed 1"},
+            {"coupling": 1.0, "mass": 1.0, "damping": 0.0, "pulling_damping": 0.0},
+        ),
+    ],
+)
+def test_what_is_one_number_is_a_scalar_coordinate(tmp_path, law, chain, numbers):
+    """In the file, in the Dataset, and in a file of an earlier version, which has attributes only."""
+    own = InitialState("θ", (-0.9, -1.1, -1.0), 0.1)
+    run = simulate(law_of("mine", 0.08, law or {"law": "linearized"}), 0.08, own, chain=Chain(3, **chain), window=5.0)
+    write_point(run, tmp_path / "new.nc")
+    with netCDF4.Dataset(tmp_path / "old.nc", "w") as file:
+        write_variables(file, POINT_VARIABLES, point_values(run), point_attributes(run))
+    with xr.open_dataset(tmp_path / "new.nc") as new, xr.open_dataset(tmp_path / "old.nc") as old:
+        assert "law" not in old.variables
+        for point in (new, run.to_dataset(), with_run_coordinates(old)):
+            scalars = {str(name): value.item() for name, value in point.coords.items() if not value.dims}
+            assert scalars == {"law": "mine", "initial": "θ", "a": 0.08, "v": 0.1, **numbers}
+        xr.testing.assert_identical(with_run_coordinates(old).drop_attrs(deep=False), new.drop_attrs(deep=False))
 
 
 def test_every_observable_of_a_run_has_a_test(repository):
@@ -156,9 +202,9 @@ def test_files_comply_with_cf(tmp_path):
 
 @pytest.mark.parametrize(("law", "a"), [("linearized", 0.08), ("nonlinear", 0.095), ("nonlinear", 0.25)])
 def test_a_default_point_is_small(tmp_path, law, a):
-    """It is below 300 KB, also if the motion never repeats and does not compress."""
+    """It is below 310 KB, also if the motion never repeats and does not compress."""
     write_point(simulate(law, a, "plus"), tmp_path / "point.nc")
-    assert 50_000 < (tmp_path / "point.nc").stat().st_size < 300_000
+    assert 50_000 < (tmp_path / "point.nc").stat().st_size < 310_000
 
 
 def test_a_run_that_did_not_complete_has_nan(tmp_path, monkeypatch):

@@ -63,7 +63,7 @@ def test_a_map_has_the_colours_of_the_other_figures_and_distinguishes_grey_branc
     dataset = attractors({number: 20 - number for number in range(len(BRANCHES) + 3)})
     hues = branch_colors(dataset)
     grey = [number for number, color in hues.items() if color == OTHER_BRANCHES]
-    colors = map_colors(dataset, [-1, 0, 3, *grey])
+    colors = map_colors(branch_colors(dataset), [-1, 0, 3, *grey])
     assert sorted(colors) == [0, 3, *grey]
     assert {number: colors[number] for number in (0, 3)} == {number: hues[number] for number in (0, 3)}
     assert len(set(colors.values())) == 2 + len(grey)

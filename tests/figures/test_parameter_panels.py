@@ -48,6 +48,16 @@ def test_a_map_has_the_first_parameter_to_the_right_and_the_second_upward(tmp_pa
         assert figure.axes[0].get_ylabel() == r"$\sigma$"
 
 
+def test_a_map_has_each_value_at_its_place_and_ends_at_the_data():
+    v = [0.01, 0.02, 0.05, 0.2]
+    for module in (grid_distance, grid_kinds, grid_exponents):
+        drawn = maps(module.draw(summary(a=A, v=v)))[0]
+        edges = drawn.get_coordinates()
+        assert edges[0, :, 0].tolist() == pytest.approx([0.1, 0.15, 0.3, 0.4])
+        assert edges[:, 0, 1].tolist() == pytest.approx([0.01, 0.015, 0.035, 0.125, 0.2])
+        assert (*drawn.axes.get_xlim(), *drawn.axes.get_ylim()) == pytest.approx((0.1, 0.4, 0.01, 0.2))
+
+
 @pytest.mark.parametrize(
     ("laws", "states"),
     [

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, basin_map, law_of, simulate
+from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, basin_map, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 from tests.refused import refused
 
@@ -50,7 +50,6 @@ def test_labels_are_those_of_whole_runs():
         ({"first_position": (1.0, 1.0)}, "first_position"),
         ({"window": 0.0}, "window: 0.0"),
         ({"windows": 10.0}, "windows"),
-        ({"law": Model(Chain(3), law_of("linearized", 0.08))}, "contact"),
         ({"chain": Chain(4)}, "blocks: 4"),
         ({"initial": InitialState("back", (0.0, 0.0), (0.1, -0.1))}, "velocity: -0.1"),
     ],

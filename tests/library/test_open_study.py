@@ -4,13 +4,20 @@ import re
 import shutil
 import subprocess
 import sys
+from importlib.util import find_spec
+from typing import Any
 
+import numpy as np
 import pytest
 import xarray
 
-from burridge_knopoff import open_study
+from burridge_knopoff import decode_flags, open_study
+from burridge_knopoff.dataset.point import write_point
+from burridge_knopoff.running.simulation import run
 from burridge_knopoff.show.result import open_result
+from burridge_knopoff.study.recorded import recorded_study
 from tests.forged import forge
+from tests.pages import blocks
 from tests.refused import refused
 from tests.small_study import OF_POINTS, run_study
 
@@ -61,6 +68,99 @@ def test_a_study_is_shown_on_one_screen(results):
     form = f"points/<law>/<initial>/a<a> +11 of 12 points {over}, such as points/linearized/minus/a0.0500"
     assert re.fullmatch(form, lines[1])
     assert any(re.fullmatch("summary/lyapunov +Lyapunov exponents and kinds of motion", line) for line in lines)
+
+
+def test_zeros_at_the_end_of_a_value_may_be_left_out(results):
+    study = open_study(results)
+    point = study["points/linearized/plus/a0.0800"]
+    for name in ("a0.08", "a0.080"):
+        assert study[f"points/linearized/plus/{name}"].identical(point)
+        assert f"points/linearized/plus/{name}" in study
+    for name in ("a0.8", "a0.0", "a0.", "a0.08001"):
+        assert f"points/linearized/plus/{name}" not in study
+
+
+def test_points_are_one_dataset(results):
+    """Over the grid, with the numbers of every file; the point that is not there is missing."""
+    study = open_study(results)
+    points = study.points()
+    assert points.mean_distance.dims == ("law", "initial", "a")
+    assert points.velocity.dims == ("law", "initial", "a", "trajectory_time", "block")
+    assert (points.v.item(), points.coupling.item(), points.time.dims) == (0.1, 1.0, ("sample",))
+    assert not {"law", "checksum", "history"} & points.attrs.keys()
+    assert points.attrs["transient"] == 20.0
+    absent = points.sel(law="nonlinear", initial="plus", a=0.08)
+    assert (absent.status.item(), absent.event_count.item(), absent.distance.isnull().all().item()) == (-1, -1, True)
+    for leaf in study["points"].leaves:
+        at = {name: leaf[name].item() for name in ("law", "initial", "a")}
+        for name, variable in points.data_vars.items():
+            assert variable.sel(at).equals(leaf[name]), (at, name)
+    some = study.points("status", "distance")
+    assert set(some.data_vars) == {"status", "distance"}
+    assert some.distance.identical(points.distance)
+    with refused("names", "event_time"):
+        study.points("event_time")
+
+
+def test_a_folder_without_points_has_no_dataset_of_them(results, tmp_path):
+    shutil.copy(results / "study.json", tmp_path)
+    with refused("points/linearized/minus/a0.0500.nc", "missing"):
+        open_study(tmp_path).points()
+
+
+def test_points_of_a_grid_are_over_its_parameters(tmp_path):
+    """The mass of one block is in no file a single number; laws have parameters of their own."""
+    config = {**CONFIG, "study": "wide", "laws": {"stribeck": {"sigma": 0.3}}, "initial": {"minus": {}}, "without": []}
+    config |= {"grid": {"mass[3]": [1.0, 1.2], "a": [0.05, 0.1], "v": [0.1]}}
+    del config["a"]
+    run_study(tmp_path / "results/wide", config)
+    study = open_study(tmp_path / "results/wide")
+    points = study.points("mean_distance")
+    assert points.mean_distance.dims == ("law", "initial", "mass_3", "a", "v")
+    point = study["points/stribeck/minus/mass_3_1.2_a0.1_v0.1"]
+    at = {"law": "stribeck", "initial": "minus", "mass_3": 1.2, "a": 0.1, "v": 0.1}
+    assert points.mean_distance.sel(at).item() == point.mean_distance.item()
+    assert points.sigma.item() == 0.3
+
+
+def test_files_combine_by_the_calls_of_the_page(results, repository, tmp_path, monkeypatch):
+    """Each call has the numbers of `points`; those that need dask are made where it is installed."""
+    (tmp_path / "results").mkdir()
+    (tmp_path / "results/paper").symlink_to(results)
+    monkeypatch.chdir(tmp_path)
+    page = (repository / "docs/results.md").read_text(encoding="utf-8")
+    calls = [block.text for block in blocks(page) if block.heading == "All points at once"]
+    assert sum("open_mfdataset" in call for call in calls) == 1
+    names: dict[str, Any] = {}
+    made = []
+    for call in calls:
+        if "open_mfdataset" not in call or find_spec("dask"):
+            exec(call, names)
+            made.append(names["points"])
+    if "plus" in names:
+        made.append(names["plus"])
+    expected = open_study(results).points()
+    for points in made:
+        wanted = expected.sel({name: points[name] for name in ("law", "initial", "a")})
+        for name, variable in wanted.where(wanted.status >= 0).data_vars.items():
+            array = points[name].where(points.status >= 0).transpose(*variable.dims)
+            np.testing.assert_array_equal(array.values, variable.values, err_msg=str(name))
+    assert {a: len(times) for a, times in names["stops"].items()} == {0.05: 18, 0.08: 23, 0.22: 20}
+
+
+def test_a_run_that_stopped_early_is_missing_after_its_end(results, tmp_path, monkeypatch):
+    shutil.copytree(results, tmp_path, dirs_exist_ok=True)
+    study = recorded_study(tmp_path)[1]
+    monkeypatch.setattr("burridge_knopoff.running.runner.STEP_LIMIT", 40)
+    write_point(run(*study.run_of("linearized", "plus", "0.0500")), tmp_path / POINT)
+    points = open_study(tmp_path).points()
+    stopped = points.sel(law="linearized", initial="plus", a=0.05)
+    assert decode_flags(stopped.status).item() == "step_limit"
+    assert stopped.mean_distance.isnull()
+    assert 0.0 < stopped.end_time < 50.0
+    assert (stopped.distance.isnull() == (stopped.time > stopped.end_time)).all()
+    assert stopped.velocity.isnull().all()
+    assert points.mean_distance.where(points.status == 0).count() == 10
 
 
 def test_files_are_opened_on_request(results, tmp_path):

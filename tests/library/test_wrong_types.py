@@ -18,6 +18,7 @@ from burridge_knopoff import (
     Model,
     MotionSettings,
     OrbitError,
+    PhysicalUnits,
     SearchSettings,
     Symmetry,
     find_attractors,
@@ -175,6 +176,10 @@ METHODS = {
     "PeriodicOrbit.events_of": lambda: (CALLS["follow"]["orbit"], {"block": 1}),
     "PeriodicOrbit.start": lambda: (CALLS["follow"]["orbit"], {"block": 1}),
     "PeriodicOrbit.stick_time": lambda: (CALLS["follow"]["orbit"], {"block": 1}),
+    "PhysicalUnits.v": lambda: (PhysicalUnits(0.5, 200.0, 2.0), {"speed": 0.02}),
+    "PhysicalUnits.speed": lambda: (PhysicalUnits(0.5, 200.0, 2.0), {"v": 0.1}),
+    "PhysicalUnits.a": lambda: (PhysicalUnits(0.5, 200.0, 2.0), {"friction_slope": -0.8}),
+    "PhysicalUnits.friction_slope": lambda: (PhysicalUnits(0.5, 200.0, 2.0), {"a": 0.1}),
     "Run.catalogue": lambda: (simulate(DROPPING, initial=REST, **QUICK), {"window": 5.0, "transient": 1.0}),
 }
 #: Functions of a physical quantity.

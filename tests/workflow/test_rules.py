@@ -16,7 +16,9 @@ from tests.workflow.planned import ROOT, planned
 
 STATES = {"minus": {}, "plus": {}}
 CONFIG = {"study": "some", "a": [0.05, 0.08], "initial": STATES}
-WHOLE = {"catalogue": {}, "edges": {}, "chains": {"blocks": [2, 3]}}
+WHOLE = {"catalogue": {}, "edges": {}, "chains": {"blocks": [2, 3], "two_blocks": {}}}
+#: The stages that a study has only if its config names them.
+NAMED = {"catalogue", "edges", "two_blocks"}
 PLANE = {"study": "plane", "grid": {"a": [0.05], "v": [0.1, 0.2]}, "initial": STATES}
 
 
@@ -30,18 +32,16 @@ def whole():
     ("config", "missing"),
     quick_first(
         [
-            ({}, {"catalogue", "edges"}),
-            ({"catalogue": {}, "edges": {}}, set()),
-            ({"without": ["solvers", "claims"]}, {"solvers", "claims", "catalogue", "edges"}),
-            ({"without": ["attractors"]}, {"attractors", "bifurcations", "basins", "phases", "catalogue", "edges"}),
-            ({"laws": {"linearized": {}}}, {"two_blocks", "catalogue", "edges"}),
-            ({"a": [0.31]}, {"basins", "phases", "catalogue", "edges"}),
-            ({"laws": {"stribeck": {}, "exponential": {}}}, {"proof", "catalogue", "edges"}),
-            (
-                {"chain": {"threshold": [1.0, 1.1, 1.2]}},
-                {"two_blocks", "proof", "phases", "catalogue", "edges", "claims"},
-            ),
-            ({"chain": {"coupling": 2}}, {"proof", "phases", "catalogue", "edges", "claims"}),
+            ({}, NAMED),
+            (WHOLE, set()),
+            ({"without": ["solvers", "claims"]}, {"solvers", "claims", *NAMED}),
+            ({"without": ["attractors"]}, {"attractors", "bifurcations", "basins", "phases", *NAMED}),
+            ({**WHOLE, "without": ["two_blocks"]}, {"two_blocks"}),
+            ({**WHOLE, "laws": {"linearized": {}}}, {"two_blocks"}),
+            ({"a": [0.31]}, {"basins", "phases", *NAMED}),
+            ({"laws": {"stribeck": {}, "exponential": {}}}, {"proof", *NAMED}),
+            ({**WHOLE, "chain": {"coupling": 2}}, {"proof", "phases", "claims"}),
+            ({"chain": {"threshold": [1.0, 1.1, 1.2]}}, {"proof", "phases", "claims", *NAMED}),
         ],
         3,
     ),
@@ -51,13 +51,15 @@ def test_the_stages_of_a_study(config, missing):
     assert {name for name in STAGES if name not in study.rules} == missing
     # A request of one says why the study does not have it.
     assert missing <= {*study.refusals}
+    for name in NAMED & missing if not config else ():
+        assert f"{name}: {{}}" in study.refusals[name]
 
 
 def test_without_python_flint_a_study_leaves_the_proof_out(monkeypatch):
     """The claims are judged without it, and one line says what to install."""
     monkeypatch.setitem(sys.modules, "flint", None)
     study = planned(CONFIG)
-    assert {name for name in STAGES if name not in study.rules} == {"proof", "catalogue", "edges"}
+    assert {name for name in STAGES if name not in study.rules} == {"proof", *NAMED}
     (claims,) = study.of("claims")
     assert not [name for name in claims.inputs["summaries"] if "proof" in name]
     reason = "python-flint is not installed: `pip install python-flint`"

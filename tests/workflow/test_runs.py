@@ -7,6 +7,7 @@ import subprocess
 
 import pytest
 
+from burridge_knopoff.figures.description import figure_descriptions
 from tests.workflow.conftest import LIMITS, TINY, Study, copied
 
 
@@ -92,7 +93,11 @@ def test_every_rule_has_a_description(study):
     lines = study.ok("--list-rules").splitlines()
     listed = dict(line.split(" ", 1) if " " in line else (line, "") for line in lines if not line.startswith("Using "))
     assert {"all", "basin_pairs", "mean_distance", "figure_lyapunov"} <= listed.keys()
-    assert [rule for rule, says in listed.items() if not re.fullmatch(r"\([A-Z].+\.\)", says)] == []
+    assert [rule for rule, says in listed.items() if not re.fullmatch(r"\([A-Z⟨].+\.\)", says)] == []
+    # Rules of figures are made in a loop; each says what its figure shows.
+    for figure in figure_descriptions():
+        assert listed[f"figure_{figure.name}"].startswith(f"({figure.title}")
+    assert len({*listed.values()}) == len(listed)
 
 
 def test_one_rule_again(copy):

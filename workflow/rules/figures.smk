@@ -5,7 +5,6 @@ for figure in figure_descriptions():
     words = figure.title.replace("{initial}", "{wildcards.initial}")
 
     rule:
-        """Draw what the module of that name in src/burridge_knopoff/figures describes."""
         name:
             f"figure_{figure.name}"
         input:
@@ -32,3 +31,5 @@ for figure in figure_descriptions():
             f"figure: {words}"
         script:
             "../scripts/figure.py"
+
+    internals.describe(getattr(rules, f"figure_{figure.name}"), figure.words)

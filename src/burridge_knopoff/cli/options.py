@@ -216,6 +216,11 @@ def simulated_law(options: argparse.Namespace) -> Law:
     numbers = dict(options.number)
     if len(numbers) < len(options.number):
         raise ValueError(f"--number: got {' '.join(name for name, _ in options.number)}, expected each name once")
+    if numbers:
+        # Other commands start without the whole config.
+        from burridge_knopoff.study.config import check_law_numbers
+
+        check_law_numbers(numbers)
     if options.formula is None and options.law not in LAWS:
         raise unknown_law("law", options.law, '--formula "{}"')
     kind = {"law": options.law} if options.formula is None else {"formula": options.formula}

@@ -6,6 +6,7 @@ describes the xarray Dataset of `to_dataset`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +24,8 @@ from burridge_knopoff.dataset.variables import (
     write_variables,
     xarray_variables,
 )
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.files import write_whole
 from burridge_knopoff.provenance.sources import SOFTWARE
@@ -126,6 +129,11 @@ POINT_VARIABLES: dict[str, Variable] = {
     "velocity": _V(("trajectory_time", "block"), "f8", "velocities U' of the blocks"),
 }
 
+#: Dimensions whose sizes differ between the runs of a study.
+RAGGED_DIMENSIONS = ("earlier_event", "event", "crossing")
+
+_RESERVED = POINT_VARIABLES.keys() | {name for item in POINT_VARIABLES.values() for name in item.dimensions}
+
 
 def point_values(trajectory: Trajectory) -> dict[str, Any]:
     """Return the values of all point variables."""
@@ -180,6 +188,47 @@ def model_attributes(model: Model) -> dict[str, Any]:
     }
 
 
+def run_coordinates(attributes: Mapping[str, Any]) -> dict[str, tuple[Variable, Any]]:
+    """Return the scalar coordinates of a run other than a and v, by name: descriptions and values.
+
+    attributes : global attributes of its point file
+
+    They are law, initial state and the parameters of the law and the chain that are one number, named as in `sweep`. A
+    parameter of the law with the name of a variable, a dimension or a parameter of the chain remains an attribute.
+    """
+    coordinates: dict[str, tuple[Variable, Any]] = {
+        "law": (_V((), "O", "friction law", coordinate=True), attributes["law"]),
+        "initial": (_V((), "O", "initial state", coordinate=True), attributes["initial"]),
+    }
+    chain = {f"chain_{key}": field.description.partition(":")[0] for key, field in fields_of(Chain).items()}
+    law = {key: f"parameter {key[4:]} of the law" for key in attributes if key.startswith("law_")}
+    for key, words in {**chain, **law}.items():
+        name, value = key.partition("_")[2], attributes.get(key, "")
+        if np.ndim(value) == 0 and not isinstance(value, str) and name not in _RESERVED:
+            coordinates.setdefault(name, (_V((), "f8", words, coordinate=True), value))
+    return coordinates
+
+
+def with_run_coordinates(point: xarray.Dataset) -> xarray.Dataset:
+    """Return a point with the coordinates of `run_coordinates`, which are attributes alone in earlier versions."""
+    return point.assign_coords(
+        {
+            name: ((), value, item.all_attributes())
+            for name, (item, value) in run_coordinates(point.attrs).items()
+            if name not in point.variables
+        }
+    )
+
+
+def _contents(trajectory: Trajectory) -> tuple[dict[str, Variable], dict[str, Any], dict[str, Any]]:
+    """Return the variables of a point file, their values and the global attributes."""
+    attributes = point_attributes(trajectory)
+    coordinates = run_coordinates(attributes)
+    variables = {**{name: item for name, (item, _) in coordinates.items()}, **POINT_VARIABLES}
+    values = {**{name: value for name, (_, value) in coordinates.items()}, **point_values(trajectory)}
+    return variables, values, attributes
+
+
 def write_point(trajectory: Trajectory, path: str | Path) -> None:
     """Write a trajectory as a point file. After an error there is no incomplete file.
 
@@ -187,9 +236,11 @@ def write_point(trajectory: Trajectory, path: str | Path) -> None:
     """
     import netCDF4
 
+    contents = _contents(trajectory)
+
     def write(name: str) -> None:
         with NETCDF_LOCK, netCDF4.Dataset(name, "w", format="NETCDF4") as dataset:
-            write_variables(dataset, POINT_VARIABLES, point_values(trajectory), point_attributes(trajectory))
+            write_variables(dataset, *contents)
 
     write_whole(path, write)
 
@@ -198,6 +249,6 @@ def to_dataset(trajectory: Trajectory) -> xarray.Dataset:
     """Return a trajectory as an xarray Dataset, equal to its point file."""
     import xarray
 
-    data = xarray_variables(POINT_VARIABLES, point_values(trajectory))
-    coordinates = {name for name, item in POINT_VARIABLES.items() if item.coordinate} | set(TIMES.values())
-    return xarray.Dataset(data, attrs=point_attributes(trajectory)).set_coords(coordinates)
+    variables, values, attributes = _contents(trajectory)
+    coordinates = {name for name, item in variables.items() if item.coordinate} | set(TIMES.values())
+    return xarray.Dataset(xarray_variables(variables, values), attrs=attributes).set_coords(coordinates)

@@ -134,16 +134,23 @@ def write_variables(
     values: Mapping[str, Any],
     attributes: Mapping[str, Any],
 ) -> None:
-    """Write attributes, dimensions, variables and the checksum of all these into an open netCDF file."""
+    """Write attributes, dimensions, variables and the checksum of all these into an open netCDF file.
+
+    A text is a scalar.
+    """
     scalars = " ".join(name for name, item in variables.items() if item.coordinate and not item.dimensions)
     sizes: dict[str, int] = {}
     contents: dict[str, tuple[tuple[str, ...], Any, dict[str, Any]]] = {}
     for name, item in variables.items():
-        array, named = np.asarray(values[name], dtype=item.dtype), item.all_attributes()
-        sizes |= zip(item.dimensions, array.shape, strict=True)
+        array, dimensions, named = np.asarray(values[name], dtype=item.dtype), item.dimensions, item.all_attributes()
+        if item.dtype in TEXT:
+            # Characters, since HDF5 crashes when a file with variable-length strings is opened many times.
+            array = np.frombuffer(str(array).encode() or b"\0", "S1")
+            dimensions, named["_Encoding"] = (f"string{array.size}",), "utf-8"
+        sizes |= zip(dimensions, array.shape, strict=True)
         if not item.coordinate:
             named["coordinates"] = _coordinates(item, scalars)
-        contents[name] = item.dimensions, array, named
+        contents[name] = dimensions, array, named
     dataset.setncatts({**attributes, NAME: content_checksum(sizes, attributes, contents)})
     for name, size in sizes.items():
         dataset.createDimension(name, size)
@@ -162,6 +169,6 @@ def write_variables(
 
 
 def _coordinates(item: Variable, scalars: str) -> str:
-    """Return the CF attribute `coordinates`: a and v for every variable, and the times of events and crossings."""
+    """Return the CF attribute `coordinates`: the scalars, and the times of events and crossings."""
     names = [TIMES[dimension] for dimension in item.dimensions if dimension in TIMES]
     return " ".join([*names, scalars]).strip()

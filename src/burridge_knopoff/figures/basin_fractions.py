@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 import xarray
 from matplotlib.axes import Axes
@@ -47,7 +49,7 @@ def draw(attractors: xarray.Dataset) -> Figure:
     colors = branch_colors(attractors)
     for column, law in enumerate(laws):
         part = attractors.sel(law=law)
-        _fractions(panels[column], part, colors)
+        draw_fractions(panels[column], part, "a", colors)
         _sweeps(panels[len(laws) + column], part)
         panels[len(laws) + column].set_xlabel("$a$")
     panels[0].set_ylabel("fraction of initial states")
@@ -57,15 +59,16 @@ def draw(attractors: xarray.Dataset) -> Figure:
     order = [*named_colors(colors, branch_names(attractors)), UNDETERMINED_STATES]
     shares = [handle for _, handle in sorted(zip(names, shares, strict=True), key=lambda pair: order.index(pair[0]))]
     if shares:
-        shares.append(Patch(facecolor="0.8", edgecolor="none", label="95 % interval"))
+        shares.append(interval_handle())
     legend_below(figure, shares, paths)
     titles = [f"{law} law: {quantity}" for quantity in ("basin fractions", "sweeps of $a$") for law in laws]
     label_panels(panels, titles)
     return figure
 
 
-def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -> None:
-    a = attractors["a"].values
+def draw_fractions(panel: Axes, attractors: xarray.Dataset, parameter: str, colors: Mapping[int, str]) -> None:
+    """Draw the basin fraction of each branch of one law versus a parameter, with 95 % Wilson intervals."""
+    a = attractors[parameter].values
     if not attractors["sample_count"].any():
         say_nothing(panel, "no states were sampled")
         return
@@ -80,6 +83,11 @@ def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) 
         alone = there & ~(is_one & (np.append(there[1:], False) | np.append(False, there[:-1])))
         panel.vlines(a[alone], interval[alone, 1], interval[alone, 2], color=color, alpha=0.4, linewidth=1.6)
     panel.plot(a, undetermined_share(attractors), "kx", markersize=3.5, markeredgewidth=0.8, label=UNDETERMINED_STATES)
+
+
+def interval_handle() -> Patch:
+    """Return the legend entry of the intervals."""
+    return Patch(facecolor="0.8", edgecolor="none", label="95 % interval")
 
 
 def _sweeps(panel: Axes, attractors: xarray.Dataset) -> None:

@@ -14,8 +14,9 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike
 
 from burridge_knopoff.attractors.lookup import branch_names
-from burridge_knopoff.figures.branches import map_colors, map_parts
-from burridge_knopoff.figures.style import COLUMN, PAGE, label_panels, legend_below, styled
+from burridge_knopoff.figures.branches import branch_colors, map_colors, map_parts, ranked_colors
+from burridge_knopoff.figures.single_panel import draw_panel
+from burridge_knopoff.figures.style import COLUMN, PAGE, StyledFigure, label_panels, legend_below, styled
 
 TITLE = "Basins of attraction"
 CATEGORY = "Attractors"
@@ -31,26 +32,19 @@ COLUMNS = 2
 
 
 @styled
-def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: Mapping[str, ArrayLike]) -> Figure:
+def draw(basins: xarray.Dataset, attractors: xarray.Dataset | None, marked_states: Mapping[str, ArrayLike]) -> Figure:
     """Draw each map in the colours of the branches reached: mirror images in a lighter shade, undetermined in black.
 
+    attractors : without them, the branches are ranked by their pixels for the colours
     marked_states : U_1(0) and U_N(0), by name, of the initial states in the plane of the maps, shape (2,), or (maps, 2)
         if they differ between maps
     """
     count = basins.sizes["map"]
     columns = min(COLUMNS, count)
     rows = -(-count // columns)
-    figure = Figure(figsize=(PAGE if columns > 1 else COLUMN, 3.2 * rows + 0.5), layout="constrained")
+    figure = StyledFigure(figsize=(PAGE if columns > 1 else COLUMN, 3.2 * rows + 0.5), layout="constrained")
     panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-    colors = map_colors(attractors, np.unique(basins["branch"]).tolist())
-    names = branch_names(attractors)
-    extent = (*basins.attrs["first_range"], *basins.attrs["last_range"])
-    marks = {name: np.broadcast_to(points, (count, 2)) for name, points in marked_states.items()}
-    there = {
-        name: points
-        for name, points in marks.items()
-        if all(extent[0] <= x <= extent[1] and extent[2] <= y <= extent[3] for x, y in points)
-    }
+    colors, marks = _colors(basins, attractors), _marks_inside(basins, marked_states)
     titles = []
     patches: dict[tuple[int, int], Patch] = {}
     for number, panel in enumerate(panels.flat):
@@ -58,25 +52,79 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: Mapp
             panel.set_axis_off()
             continue
         basin_map = basins.isel(map=number)
-        titles.append(f"{basin_map['law'].item()} law, $a={basin_map['a'].item():g}$")
-        picture = np.zeros((*basin_map["branch"].shape, 3))
-        for part in map_parts(basin_map, colors, names):
-            picture[part.members] = to_rgb(part.color)
-            patches[part.branch, -part.side] = Patch(
-                facecolor=part.color, edgecolor="0.3", linewidth=0.4, label=part.name
-            )
-        panel.imshow(picture, origin="lower", extent=extent, interpolation="nearest", aspect="auto")
-        panel.set_box_aspect(1.0)
-        for name, points in there.items():
-            _mark(panel, name, points[number], extent)
-        if number >= count - columns:
-            panel.set_xlabel("$U_1(0)$")
+        titles.append(_title(basin_map))
+        patches |= _map(panel, basin_map, colors)
+        for name, points in marks.items():
+            _mark(panel, name, points[number], _extent(basins))
+        if number < count - columns:
+            panel.set_xlabel("")
+        else:
             panel.tick_params(labelbottom=True)
-        if number % columns == 0:
-            panel.set_ylabel(f"$U_{{{basins.attrs['plane_position'].size}}}(0)$")
-    legend_below(figure, [patches[key] for key in sorted(patches, key=lambda key: (key[0] < 0, *key))])
+        if number % columns:
+            panel.set_ylabel("")
+    legend_below(figure, _in_order(patches))
     label_panels(list(panels.flat)[:count], titles)
     return figure
+
+
+def draw_single(
+    basins: xarray.Dataset,
+    attractors: xarray.Dataset | None,
+    marked_states: Mapping[str, ArrayLike],
+    axes: Axes | None = None,
+) -> Figure:
+    """Draw a single map as `draw` does, into axes if there are any."""
+    if axes is None:
+        return draw(basins, attractors, marked_states)
+    basin_map, colors = basins.isel(map=0), _colors(basins, attractors)
+
+    def draw_into(panel: Axes) -> str:
+        for patch in _in_order(_map(panel, basin_map, colors)):
+            panel.plot([], [], "s", color=patch.get_facecolor(), markeredgecolor="0.3", label=patch.get_label())
+        for name, points in _marks_inside(basins, marked_states).items():
+            _mark(panel, name, points[0], _extent(basins))
+        return _title(basin_map)
+
+    return draw_panel(draw_into, axes)
+
+
+def _colors(basins: xarray.Dataset, attractors: xarray.Dataset | None) -> dict[int, str]:
+    branches, pixels = np.unique(basins["branch"].values, return_counts=True)
+    ranked = ranked_colors(branches[np.argsort(-pixels, kind="stable")].tolist())
+    return map_colors(ranked if attractors is None else branch_colors(attractors), branches.tolist())
+
+
+def _marks_inside(basins: xarray.Dataset, marked_states: Mapping[str, ArrayLike]) -> dict[str, np.ndarray]:
+    """Return the states that lie inside every map, each of shape (maps, 2), by name."""
+    marks = {name: np.broadcast_to(points, (basins.sizes["map"], 2)) for name, points in marked_states.items()}
+    left, right, bottom, top = _extent(basins)
+    low, high = (left, bottom), (right, top)
+    return {name: points for name, points in marks.items() if ((points >= low) & (points <= high)).all()}
+
+
+def _in_order(patches: Mapping[tuple[int, int], Patch]) -> list[Patch]:
+    return [patches[key] for key in sorted(patches, key=lambda key: (key[0] < 0, *key))]
+
+
+def _extent(basins: xarray.Dataset) -> tuple[float, float, float, float]:
+    return *basins.attrs["first_range"], *basins.attrs["last_range"]
+
+
+def _title(basin_map: xarray.Dataset) -> str:
+    return f"{basin_map['law'].item()} law, $a={basin_map['a'].item():g}$"
+
+
+def _map(panel: Axes, basin_map: xarray.Dataset, colors: Mapping[int, str]) -> dict[tuple[int, int], Patch]:
+    """Draw one map with its axis labels, and return the legend entry of each part by branch and side, + before −."""
+    picture = np.zeros((*basin_map["branch"].shape, 3))
+    patches = {}
+    for part in map_parts(basin_map, colors, branch_names(basin_map)):
+        picture[part.members] = to_rgb(part.color)
+        patches[part.branch, -part.side] = Patch(facecolor=part.color, edgecolor="0.3", linewidth=0.4, label=part.name)
+    panel.imshow(picture, origin="lower", extent=_extent(basin_map), interpolation="nearest", aspect="auto")
+    panel.set_box_aspect(1.0)
+    panel.set(xlabel="$U_1(0)$", ylabel=f"$U_{{{basin_map.attrs['plane_position'].size}}}(0)$")
+    return patches
 
 
 def _mark(panel: Axes, name: str, point: np.ndarray, extent: tuple[float, ...]) -> None:

@@ -38,6 +38,8 @@ undetermined changes are only known to lie in a range of a, the width of the bar
 """
 
 MARK: Any = {"color": "black", "markersize": 3.6, "markerfacecolor": "white", "markeredgewidth": 0.7}
+#: Look of the curves of stable and of unstable orbits.
+ORBITS: dict[bool, Any] = {True: {"linewidth": 1.3, "linestyle": "-"}, False: {"linewidth": 0.7, "linestyle": "--"}}
 #: Rows of the middle panels: what is not known comes last.
 ROWS = sorted(BifurcationKind, key=lambda kind: kind < 0)
 
@@ -108,13 +110,16 @@ def _orbits(panel: Axes, bifurcations: xarray.Dataset, law: str, colors: dict[in
     a, mean, stable = (bifurcations[f"orbit_{name}"].values for name in ("a", "mean_distance", "stable"))
     for segment in np.unique(number[mask]):
         chosen = np.flatnonzero(mask & (number == segment))
-        color = colors.get(int(branch[chosen[0]]), OTHER_BRANCHES)
-        ends = np.flatnonzero(np.diff(stable[chosen])) + 1
-        for first, last in zip([0, *ends], [*ends, len(chosen)], strict=True):
-            # An unstable piece is drawn from the stable orbit before it to the stable orbit after it.
-            piece = chosen[first:last] if stable[chosen[first]] else chosen[max(first - 1, 0) : last + 1]
-            style, width = ("-", 1.3) if stable[chosen[first]] else ("--", 0.7)
-            panel.plot(a[piece], mean[piece], linestyle=style, linewidth=width, color=color, zorder=1)
+        draw_branch(panel, a[chosen], mean[chosen], stable[chosen], colors.get(int(branch[chosen[0]]), OTHER_BRANCHES))
+
+
+def draw_branch(panel: Axes, a: np.ndarray, values: np.ndarray, stable: np.ndarray, color: str) -> None:
+    """Draw a quantity along one branch of orbits, solid where they are stable, dashed elsewhere."""
+    ends = np.flatnonzero(np.diff(stable)) + 1
+    for first, last in zip([0, *ends], [*ends, len(a)], strict=True):
+        # An unstable piece is drawn from the stable orbit before it to the stable orbit after it.
+        piece = slice(first, last) if stable[first] else slice(max(first - 1, 0), last + 1)
+        panel.plot(a[piece], values[piece], color=color, zorder=1, **ORBITS[bool(stable[first])])
 
 
 def _bifurcations(
@@ -153,10 +158,14 @@ def _marks(panel: Axes, bifurcations: xarray.Dataset, law: str) -> None:
     )
     kind = bifurcations["kind"].values
     mask = (bifurcations["law"].values == law) & np.isin(_branch(bifurcations), orbits[count > 1])
-    a, mean = bifurcations["a"].values, bifurcations["mean_distance"].values
+    draw_marks(panel, bifurcations["a"].values[mask], bifurcations["mean_distance"].values[mask], kind[mask])
+
+
+def draw_marks(panel: Axes, a: np.ndarray, values: np.ndarray, kind: np.ndarray) -> None:
+    """Draw the symbol of its kind at each located bifurcation."""
     for bifurcation in filter(attrgetter("mark"), BifurcationKind):
-        chosen = mask & (kind == bifurcation) & np.isfinite(mean)
-        panel.plot(a[chosen], mean[chosen], bifurcation.mark, zorder=3, **MARK)
+        chosen = (kind == bifurcation) & np.isfinite(values)
+        panel.plot(a[chosen], values[chosen], bifurcation.mark, zorder=3, **MARK)
 
 
 def _stops(panel: Axes, bifurcations: xarray.Dataset, law: str) -> None:
@@ -177,17 +186,20 @@ def _stops(panel: Axes, bifurcations: xarray.Dataset, law: str) -> None:
 def _legend(figure: Figure, attractors: xarray.Dataset, bifurcations: xarray.Dataset, colors: dict[int, str]) -> None:
     numbers = np.unique([*attractors["branch"].values.ravel(), *bifurcations["orbit_branch"].values])
     drawn = {number: colors.get(number, OTHER_BRANCHES) for number in numbers[numbers >= 0].tolist()}
-    stable = bifurcations["orbit_stable"].values
-    orbits: Any = [(1, 1.3, "-", "stable orbits"), (0, 0.7, "--", "unstable orbits")]
     handles = [
-        *(
-            Line2D([], [], color="black", linewidth=width, linestyle=line, label=name)
-            for number, width, line, name in orbits
-            if number in stable
-        ),
+        *orbit_handles(bifurcations["orbit_stable"].values == 1),
         *(
             Line2D([], [], color=color, linewidth=1.3, label=name)
             for name, color in named_colors(drawn, branch_names(attractors)).items()
         ),
     ]
     legend_below(figure, handles)
+
+
+def orbit_handles(stable: np.ndarray) -> list[Line2D]:
+    """Return the legend entries of stable and unstable orbits, if there are any."""
+    return [
+        Line2D([], [], color="black", label=f"{'' if is_stable else 'un'}stable orbits", **look)
+        for is_stable, look in ORBITS.items()
+        if (stable == is_stable).any()
+    ]

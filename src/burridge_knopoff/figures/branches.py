@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import cycle
 
@@ -26,13 +26,19 @@ def branch_colors(attractors: xarray.Dataset) -> dict[int, str]:
     branch, count, samples = (attractors[name].values for name in ("branch", "basin_count", "sample_count"))
     share = count / np.maximum(samples, 1)[..., None]
     # Without sampled states, or for equal fractions, the branch found at more values of a comes first.
-    present = {int(n): branch == n for n in np.unique(branch) if n > 0}
+    present = {int(n): branch == n for n in np.unique(branch) if n >= 0}
     sizes = {
         n: (float(np.where(where, share, 0.0).sum(axis=-1).max()), int(where.any(axis=-1).sum()))
         for n, where in present.items()
     }
-    ranked = sorted(sizes, key=lambda n: (-sizes[n][0], -sizes[n][1], n))
-    colors = {0: BRANCHES[0]} if (branch == 0).any() else {}
+    return ranked_colors(sorted(sizes, key=lambda n: (-sizes[n][0], -sizes[n][1], n)))
+
+
+def ranked_colors(branches: Iterable[int]) -> dict[int, str]:
+    """Return the colour of each branch by its number; grey for the last ones, if there are more than colours."""
+    ranked = [*branches]
+    colors = {0: BRANCHES[0]} if 0 in ranked else {}
+    ranked = [number for number in ranked if number > 0]
     most = len(BRANCHES) - 1
     free = dict.fromkeys(range(most))
     for number in sorted(ranked[:most]):
@@ -42,9 +48,9 @@ def branch_colors(attractors: xarray.Dataset) -> dict[int, str]:
     return colors | dict.fromkeys(ranked[most:], OTHER_BRANCHES)
 
 
-def map_colors(attractors: xarray.Dataset, branches: Collection[int]) -> dict[int, str]:
+def map_colors(colors: Mapping[int, str], branches: Collection[int]) -> dict[int, str]:
     """Return the colours of the branches in maps; branches that share a colour have different shades of it."""
-    colors, shades = branch_colors(attractors), cycle(OTHER_SHADES)
+    shades = cycle(OTHER_SHADES)
     return {n: next(shades) if colors[n] == OTHER_BRANCHES else colors[n] for n in sorted(branches) if n >= 0}
 
 

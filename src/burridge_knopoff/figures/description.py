@@ -14,6 +14,7 @@ FILE : name of the picture, if it is not that of the module
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -34,6 +35,13 @@ class Description:
     condition: str = ""
     paper: str = ""
     file: str = ""
+
+    @property
+    def words(self) -> str:
+        """What it shows: its title, the paper's figure, and its caption up to the first detail."""
+        paper, caption = f" (the paper's {self.paper})" if self.paper else "", " ".join(self.caption.split())
+        first = re.split(r"[.:;](?: |$)", re.sub(r"^(?:\(a\)|Top:) ", "", caption))[0]
+        return f"{self.title}{paper}. {first[0].upper()}{first[1:]}."
 
     @property
     def of_points(self) -> bool:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 import xarray
 from matplotlib.artist import Artist
@@ -59,11 +62,15 @@ def draw(
     marked: dict[str, Artist] = {}
     for column, law in enumerate(laws):
         if attractors is not None:
-            _branches(panels[0, column], attractors.sel(law=law), colors)
+            draw_attractors(panels[0, column], attractors.sel(law=law), "a", colors, 6.0)
             _conventions(panels[1, column], attractors.sel(law=law), colors)
         _label_constant_friction(panels[0, column], mean_distance.sel(law=law))
         # Small over the attractors, so that they do not hide the colours of the branches.
-        _runs(panels[0, column], mean_distance.sel(law=law), 1.9 if attractors is None else 0.9)
+        runs, size = mean_distance.sel(law=law), 1.9 if attractors is None else 0.9
+        if runs["mean_distance"].isnull().all():
+            say(panels[0, column], "no run completed")
+        for index, initial in enumerate(runs["initial"].values):
+            draw_runs(panels[0, column], runs.sel(initial=initial), "a", **state_symbol(index, size))
         if orbits is not None and np.isfinite(critical := orbits["critical_a"].sel(law=law).item()):
             look = {"color": "0.4", "linestyle": ":", "linewidth": 0.9}
             marked["a_c"] = panels[0, column].axvline(critical, zorder=0, label="$a_c$", **look)
@@ -82,7 +89,7 @@ def draw(
             ),
             *marked.values(),
         ],
-        _branch_handles(colors, {} if attractors is None else branch_names(attractors)),
+        branch_handles(colors, {} if attractors is None else branch_names(attractors)),
     )
     label_panels(
         panels.flat, [*(f"{law} law" for law in laws), *(f"{law} law: branch reached" for law in laws)][: panels.size]
@@ -90,29 +97,29 @@ def draw(
     return figure
 
 
-def _branches(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -> None:
+def draw_attractors(
+    panel: Axes, attractors: xarray.Dataset, parameter: str, colors: Mapping[int, str], size: float
+) -> None:
+    """Draw ⟨J⟩ of the attractors of one law versus a parameter, in the colours of their branches."""
     branch = attractors["branch"].values
     for number in np.unique(branch[branch >= 0]):
         slots = branch == number
-        a = np.broadcast_to(attractors["a"].values[:, None], branch.shape)[slots]
+        a = np.broadcast_to(attractors[parameter].values[:, None], branch.shape)[slots]
         panel.plot(
             a,
             attractors["mean_distance"].values[slots],
             "o",
             color=colors[int(number)],
-            markersize=6.0,
+            markersize=size,
             markeredgewidth=0,
             zorder=1,
         )
 
 
-def _runs(panel: Axes, runs: xarray.Dataset, size: float) -> None:
-    if runs["mean_distance"].isnull().all():
-        say(panel, "no run completed")
-    for index, initial in enumerate(runs["initial"].values):
-        run = runs.sel(initial=initial)
-        error = 3.0 * run["mean_distance_error"].values
-        panel.errorbar(run["a"].values, run["mean_distance"].values, error, elinewidth=0.5, **state_symbol(index, size))
+def draw_runs(panel: Axes, runs: xarray.Dataset, parameter: str, **look: Any) -> None:
+    """Draw ⟨J⟩ of runs versus a parameter, with bars of three standard errors; look : arguments of `errorbar`."""
+    error = 3.0 * runs["mean_distance_error"].values
+    panel.errorbar(runs[parameter].values, runs["mean_distance"].values, error, elinewidth=0.5, **look)
 
 
 def _label_constant_friction(panel: Axes, runs: xarray.Dataset) -> None:
@@ -145,7 +152,8 @@ def branches_reached(attractors: xarray.Dataset) -> tuple[list[str], np.ndarray]
     return [", ".join(map(str, row)).replace("one_sided", "one-sided") for row in reached["row"].values], reached.values
 
 
-def _branch_handles(colors: dict[int, str], names: dict[int, str]) -> list[Line2D]:
+def branch_handles(colors: Mapping[int, str], names: Mapping[int, str]) -> list[Line2D]:
+    """Return the legend entries of branches."""
     return [
         Line2D([], [], color=color, label=name, linestyle="", marker="o", markersize=5, markeredgewidth=0)
         for name, color in named_colors(colors, names).items()

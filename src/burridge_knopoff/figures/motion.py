@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.palette import block_color
-from burridge_knopoff.figures.style import PAGE, label_panels, say_nothing, styled
+from burridge_knopoff.figures.style import PAGE, StyledFigure, label_panels, say_nothing, styled
 from burridge_knopoff.running.status import STATUS_WORDS
 from burridge_knopoff.summaries.bifurcation_diagram import ROUNDING
 
@@ -46,7 +46,7 @@ FEW = 50
 def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
     """Draw U_i'(τ) and U_i(τ) − vτ of every block in the recorded last part of a run, and its section W = 0."""
     (point,) = runs.values()
-    figure = Figure(figsize=(PAGE, 6.4), layout="constrained")
+    figure = StyledFigure(figsize=(PAGE, 6.4), layout="constrained")
     places: Any = [["velocity", "velocity"], ["position", "position"], ["section", "times"]]
     panels = figure.subplot_mosaic(places, height_ratios=[1.6, 1.6, 2.0], width_ratios=[1.0, 1.5])
     for name, label in (("velocity", "$U_i$′"), ("position", r"$U_i-v\tau$")):

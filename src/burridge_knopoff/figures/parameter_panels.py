@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import product
 from typing import Any
 
@@ -12,7 +12,16 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import ACROSS, COLUMN, PAGE, cells, even_indices, label_panels, new_figure, show_all
+from burridge_knopoff.figures.style import (
+    ACROSS,
+    COLUMN,
+    PAGE,
+    even_indices,
+    label_panels,
+    map_cells,
+    new_figure,
+    show_all,
+)
 
 #: Most values of each further parameter that have panels.
 MOST = 6
@@ -29,8 +38,9 @@ def draw_panels(
 ) -> tuple[Figure, list[Axes], QuadMesh | None]:
     """Draw a panel for each law, initial state and value of further parameters; return figure, panels and the last map.
 
-    The first two parameters with several values are the axes of a map; a single one is the axis of a curve. Of further
-    parameters at most MOST values are shown, which are evenly spaced in the list of all.
+    The first two parameters with several values are the axes of a map, with each value at its place; a single one is
+    the axis of a curve. Of further parameters at most MOST values are shown, which are evenly spaced in the list of
+    all.
 
     label : of the vertical axis of a curve
     curve : draws one panel, from the values of the parameter and the Dataset over it
@@ -45,18 +55,30 @@ def draw_panels(
     figure, panels = new_figure(*size, down, across, share_columns=False, empty=empty)
     first, drawn = grid[varied[0]].values, None
     for number, (panel, (_, part)) in enumerate(zip(panels, parts, strict=True)):
-        panel.set_xlabel(f"${_symbol(varied[0])}$")
+        panel.set_xlabel(f"${symbol(varied[0])}$")
         if len(varied) > 1:
-            edges = [cells(grid[name].values) for name in varied[:2]]
-            drawn = panel.pcolormesh(*edges, colors(part.transpose(varied[1], varied[0], ...)), rasterized=True, **look)
-            panel.set_xlim(edges[0][0], edges[0][-1])
+            drawn = draw_map(panel, part, varied, colors, **look)
         else:
             show_all(panel, first)
             curve(panel, first, part)
         if number % across == 0:
-            panel.set_ylabel(f"${_symbol(varied[1])}$" if len(varied) > 1 else label)
+            panel.set_ylabel(f"${symbol(varied[1])}$" if len(varied) > 1 else label)
     label_panels(panels, [title for title, _ in parts])
     return figure, panels, drawn
+
+
+def draw_map(
+    panel: Axes,
+    part: xarray.Dataset,
+    varied: Sequence[str],
+    colors: Callable[[xarray.Dataset], np.ndarray],
+    **look: Any,
+) -> QuadMesh:
+    """Draw a map over the first two of the parameters; other arguments are those of `draw_panels`."""
+    first, second = varied[:2]
+    edges = [map_cells(part[name].values) for name in (first, second)]
+    panel.set_xlim(edges[0][0], edges[0][-1])
+    return panel.pcolormesh(*edges, colors(part.transpose(second, first, ...)), rasterized=True, **look)
 
 
 def panels_across(count: int, of_law: int) -> int:
@@ -86,11 +108,16 @@ def panel_parts(grid: xarray.Dataset) -> Iterator[tuple[str, xarray.Dataset]]:
     for law, initial in product(grid["law"].values, grid["initial"].values):
         for places in product(*chosen):
             part = grid.sel(law=law, initial=initial).isel(dict(zip(further, places, strict=True)))
-            values = [f"${_symbol(name)} = {part[name].item():g}$" for name in further if grid.sizes[name] > 1]
+            values = [f"${symbol(name)} = {part[name].item():g}$" for name in further if grid.sizes[name] > 1]
             yield ", ".join([f"{law} law, {initial}", *values]), part
 
 
-def _symbol(name: str) -> str:
+def constant(data: xarray.Dataset, name: str) -> np.ndarray:
+    """Return the values of a coordinate; without it, of the attribute of that name, which files may have instead."""
+    return data[name].values if name in data.coords else np.array(data.attrs.get(name, ""))
+
+
+def symbol(name: str) -> str:
     """Return the name of a parameter for mathematical text: a Latin or Greek letter slanted, a word upright."""
     if name in GREEK:
         return f"\\{name}"

@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import partial, wraps
+from io import BytesIO
 from pathlib import Path
 from typing import Any, ParamSpec
 
@@ -27,6 +28,9 @@ Arguments = ParamSpec("Arguments")
 #: Width of two journal columns and of one, 17.8 and 8.6 cm, in inches.
 PAGE = 7.0
 COLUMN = 3.4
+
+# Dots per inch on a screen.
+SCREEN = 144
 
 # Colour of shaded cells.
 SHADE = "0.9"
@@ -70,6 +74,12 @@ class StyledFigure(Figure):
         # Ticks, among others, are created only now.
         with mpl.rc_context(STYLE):
             super().draw(renderer)
+
+    def _repr_png_(self) -> bytes:
+        """Return the picture as a notebook shows it, which shows none by itself until pyplot is imported."""
+        picture = BytesIO()
+        self.savefig(picture, format="png", dpi=SCREEN)
+        return picture.getvalue()
 
 
 def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
@@ -239,6 +249,11 @@ def cells(values: np.ndarray) -> np.ndarray:
         return np.array([values[0] - half, values[0] + half])
     middle = 0.5 * (values[1:] + values[:-1])
     return np.concatenate([2.0 * values[:1] - middle[:1], middle, 2.0 * values[-1:] - middle[-1:]])
+
+
+def map_cells(values: np.ndarray) -> np.ndarray:
+    """Return the edges of the cells of ascending values in a map, which ends at the first and the last of them."""
+    return np.clip(cells(values), values[0], values[-1])
 
 
 def strips(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

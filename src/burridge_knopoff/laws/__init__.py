@@ -26,11 +26,12 @@ LAWS: Mapping[str, type[Law]] = {
 }
 
 
-def law_of(name: str, a: float, description: Mapping[str, Any] | None = None) -> Law:
+def law_of(name: str, a: float, description: Mapping[str, Any] | None = None, **parameters: Any) -> Law:
     """Return a friction law by name, at a value of a.
 
-    description : for a law given by a formula, `formula` and its parameters; for a built-in law, its parameters, and
-        `law`, the name of the built-in law, if `name` is a different one
+    parameters : those of the law other than a, such as sigma
+    description : the same as a mapping, as in a config: for a law given by a formula, `formula` and its parameters; for
+        a built-in law, its parameters, and `law`, the name of the built-in law, if `name` is a different one
 
     Raises ValueError if there is no such law, or if the law does not accept these parameters.
 
@@ -38,14 +39,17 @@ def law_of(name: str, a: float, description: Mapping[str, Any] | None = None) ->
     sources are in the modules of `burridge_knopoff.laws`.
 
     >>> from burridge_knopoff import law_of
-    >>> law_of("carlson_langer", 0.5, {"sigma": 0.02})
+    >>> law_of("carlson_langer", 0.5, sigma=0.02)
     <law carlson_langer: (1 - sigma)/(1 + a*u/(1 - sigma)), a=0.5, sigma=0.02>
-    >>> law_of("mine", 0.5, {"formula": "(1 - drop)*exp(-a*u)", "drop": 0.02}).name
+    >>> law_of("mine", 0.5, formula="(1 - drop)*exp(-a*u)", drop=0.02).name
     'mine'
     """
     if not isinstance(description, Mapping | None):
         raise refusal("description", description, "a mapping with the parameters of a law, and its formula if any")
     values = dict(description or {})
+    for key in values.keys() & parameters.keys():
+        raise ValueError(f"{key}: got two values, expected one")
+    values |= parameters
     if "name" in values:
         raise ValueError(f"{name}.name: not a parameter of a law")
     if "formula" in values:

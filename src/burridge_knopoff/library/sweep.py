@@ -95,7 +95,8 @@ def sweep(
         …, "position": …, "velocity": …}` or an `InitialState`
     by_name : other parameters, v, those of the chain such as coupling, or of one block or spring such as `mass[3]`, and
         the parameters of the law such as sigma, each one number or a sequence; and settings of the run by name
-    motion : thresholds of the kinds of motion, for v = 0.1; None leaves out `kind` and `period`
+    motion : thresholds of the kinds of motion, for v = 0.1; None leaves out `kind` and `period`, which take up to a
+        fifth of the time of a run of default length
     settings, chain, blocks, contact : see `simulate`
     cores : number of simultaneous runs, by default the number of cores; results do not depend on it
 

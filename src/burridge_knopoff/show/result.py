@@ -5,13 +5,13 @@ from __future__ import annotations
 import contextlib
 import os
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import xarray
 
-from burridge_knopoff.dataset.point import POINT_VARIABLES
+from burridge_knopoff.dataset.point import POINT_VARIABLES, with_run_coordinates
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.outputs import study_files
 from burridge_knopoff.provenance.bad_file import BadFile
@@ -130,4 +130,5 @@ def open_result(path: str | Path) -> Result:
     data = xarray.load_dataset(path, engine="netcdf4")
     if not all(isinstance(data.attrs.get(name), str) for name in provenance(__name__)):
         raise ValueError(f"{path}: does not say which software and sources made it")
-    return Result(path, data, study, read_study_record(study) if study else {}, files)
+    result = Result(path, data, study, read_study_record(study) if study else {}, files)
+    return replace(result, data=with_run_coordinates(data)) if result.is_point else result

@@ -7,7 +7,7 @@ other.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -198,15 +198,29 @@ CHAINS = {
     "symmetric_samples": replace(_SAMPLE["symmetric_samples"], range=SAMPLES),
     **{key: _SAMPLE[key] for key in ("seed", "position", "velocity")},
     **_settings_of(Watch, "synchronization_threshold"),
-    "two_blocks": _section("comparison of the laws for two blocks", TWO_BLOCKS),
+    "two_blocks": _optional_section("comparison of the laws for two blocks", TWO_BLOCKS),
 }
+
+
+def check_law_numbers(names: Iterable[str]) -> None:
+    """Raise ValueError, one line, if a parameter of a law has the name of a key of the config, such as `window`.
+
+    In Python both are arguments of the same functions. `a` and `u` are refused by every law.
+    """
+    sections = (field.range.fields for field in CONFIG.fields.values() if isinstance(field.range, Keys))
+    settings = CONFIG.fields.keys() | {name for section in sections for name in section}
+    for name in names:
+        if name in settings - {"a"}:
+            raise ValueError(f"{name}: got a parameter of the law with the name of a setting, expected another name")
+
 
 CONFIG = Keys(
     {
         "study": Field(STUDY_NAME, "name of the study and of its folder in results/"),
         "a": Field(
             VALUES,
-            "friction parameters, in any order; from and to are included, and to − from must be a multiple of step",
+            "friction parameters, in any order; ranges may overlap; from and to are included, and to − from must be a "
+            "multiple of step",
             FOLLOWS,
         ),
         "grid": Field(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
-from itertools import pairwise
 from typing import Any
 
 from burridge_knopoff.messages import format_value, refusal
@@ -65,21 +64,17 @@ def _named(parameter: str, place: str, items: Sequence[Any], digits: int) -> dic
 
 
 def values_of(items: Sequence[Any], place: str) -> list[float]:
-    """Return the numbers and the values of the ranges in a list, in ascending order.
+    """Return the numbers and the values of the ranges in a list, each value once, in ascending order.
 
-    Raises ValueError, one line that starts with the place, for too many values or a repeated one.
+    Raises ValueError, one line that starts with the place, for too many values.
     """
-    values: list[float] = []
+    values: set[float] = set()
     for position, item in enumerate(items):
         # Adding 0 turns -0.0 into 0.0.
-        values += [float(item) + 0.0] if not isinstance(item, dict) else _range(item, f"{place}[{position}]")
+        values.update([float(item) + 0.0] if not isinstance(item, dict) else _range(item, f"{place}[{position}]"))
         if len(values) > MAXIMUM_POINTS:
             raise ValueError(f"{place}: got more than {MAXIMUM_POINTS} values, expected at most that many")
-    values.sort()
-    for value, following in pairwise(values):
-        if value == following:
-            raise ValueError(f"{place}: got {value!r} twice, as a number or by two ranges; expected it once")
-    return values
+    return sorted(values)
 
 
 def _range(item: Mapping[str, float], place: str) -> list[float]:

@@ -23,7 +23,7 @@ from burridge_knopoff.model.parameters import plain_name
 from burridge_knopoff.model.ranges import OneOf, Range, Several
 from burridge_knopoff.provenance.files import LONGEST_NAME
 from burridge_knopoff.running.settings import LONGEST_STEP, SOLVERS, Settings, shortest_step
-from burridge_knopoff.study.config import SOME_VALUES
+from burridge_knopoff.study.config import SOME_VALUES, LawKeys, check_law_numbers
 from burridge_knopoff.study.grid import MAXIMUM_POINTS, values_of
 from burridge_knopoff.study.paper import PAPER_BASINS, PAPER_COMPARED, PAPER_PHASES
 from burridge_knopoff.study.paths import point_file
@@ -98,6 +98,8 @@ def fill_names(config: dict[str, Any]) -> None:
     for name, description in laws.items():
         if name not in LAWS and not {"law", "formula"} & description.keys():
             raise unknown_law(f"laws.{name}", name)
+        with error_prefix(f"laws.{name}."):
+            check_law_numbers(description.keys() - LawKeys.fields.keys())
     law_names, first = OneOf(tuple(laws)), next(iter(laws))
     law_names.form(config["figures"].setdefault("law", first), "figures.law")
     Several(law_names).form(config["chains"].setdefault("laws", [first]), "chains.laws")
@@ -141,9 +143,10 @@ def check_models(
                 "a formula that depends on a, or a single value of a",
             )
     chains = config["chains"]
-    for key, section, names in (("chains", chains, chains["laws"]), ("chains.two_blocks", chains["two_blocks"], laws)):
+    pair = chains.get("two_blocks", {"a": []})
+    for key, values, names in (("chains", chains["a"], chains["laws"]), ("chains.two_blocks", pair["a"], laws)):
         for name in names:
-            for a in section["a"]:
+            for a in values:
                 with error_prefix(f"{key}.a: got {a:g}, at which laws."):
                     law_of(name, a, laws[name])
     for name, state in config["initial"].items():
@@ -233,7 +236,8 @@ def fill_chains(config: Mapping[str, Any]) -> None:
     """Convert the lists of a for chains of other lengths to numbers."""
     chains = config["chains"]
     chains["a"] = values_of(chains["a"], "chains.a")
-    chains["two_blocks"]["a"] = values_of(chains["two_blocks"]["a"], "chains.two_blocks.a")
+    if "two_blocks" in chains:
+        chains["two_blocks"]["a"] = values_of(chains["two_blocks"]["a"], "chains.two_blocks.a")
 
 
 def leave_out(config: Mapping[str, Any], stages: Collection[str]) -> None:
@@ -274,7 +278,7 @@ def check_jobs(config: Mapping[str, Any], blocks: int, without: Collection[str])
     kept = len(phases["a"]) * max(len(phases["inner_share"]), blocks - 2)
     maps = sum(map(len, basins["a"].values()))
     rows = -(-basins["pixels"] // basins["tiles"])
-    two_blocks = chains["two_blocks"]
+    two_blocks = chains.get("two_blocks", {"a": [], "samples": 0})
     for key, numbers in (
         ("attractors.samples", 2 * blocks * attractors["samples"]),
         ("basins.pixels", maps * basins["pixels"] ** 2),

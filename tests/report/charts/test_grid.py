@@ -44,6 +44,9 @@ def test_each_cell_says_its_parameters_and_its_run():
     assert trace["text"][0][2] == "⟨J⟩ = 4.0000 ± 0.0010<br>periodic<br>λ₁ = 0.0400 ± 0.0010"
     assert trace["text"][1][2] == "the run did not complete"
     assert figure.layout.xaxis.title.text == "<i>a</i>"
+    # Each value is at its place, and the map ends at the data.
+    (cells,) = figure.data
+    assert (*cells.x, *cells.y) == pytest.approx((0.1, 0.15, 0.3, 0.4, 0.05, 0.075, 0.1))
 
 
 @pytest.mark.parametrize(

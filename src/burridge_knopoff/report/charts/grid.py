@@ -9,7 +9,7 @@ import plotly.graph_objects as go
 import xarray
 
 from burridge_knopoff.figures.parameter_panels import panel_parts, varied_parameters
-from burridge_knopoff.figures.style import cells
+from burridge_knopoff.figures.style import map_cells
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.report.charts.look import axis, chart
 from burridge_knopoff.report.charts.theme import SCALE
@@ -49,8 +49,8 @@ def _map(part: xarray.Dataset, varied: list[str], highest: float) -> go.Figure:
     x, y = (part[name].values for name in varied[:2])
     names = [f"<i>{name}</i>" if len(name) == 1 else name for name in varied[:2]]
     pixels = go.Heatmap(
-        x=cells(x),
-        y=cells(y),
+        x=map_cells(x),
+        y=map_cells(y),
         z=values,
         text=words,
         zmin=0.0,

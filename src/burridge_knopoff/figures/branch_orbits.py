@@ -1,0 +1,85 @@
+"""A branch of periodic orbits with its bifurcations along a parameter, and curves of bifurcations over two."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from burridge_knopoff.figures.bifurcations import MARK, draw_branch, draw_marks, orbit_handles
+from burridge_knopoff.figures.palette import dashes
+from burridge_knopoff.figures.parameter_panels import symbol
+from burridge_knopoff.figures.single_panel import draw_panel
+from burridge_knopoff.figures.style import lone_marker
+from burridge_knopoff.periodic_orbits.bifurcation_curve import BifurcationCurve
+from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation
+from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+
+# Largest difference of an orbit from the first one, as a fraction of the range on the branch, at which it is closed.
+CLOSED = 1e-3
+
+
+def draw(branch: Sequence[BranchOrbit], bifurcations: Sequence[Bifurcation] = (), axes: Axes | None = None) -> Figure:
+    """Draw ⟨J⟩ of the orbits along their parameter with a symbol at each bifurcation; T if all are synchronized."""
+    return draw_panel(lambda panel: _branch(panel, branch, bifurcations), axes)
+
+
+def _branch(panel: Axes, branch: Sequence[BranchOrbit], bifurcations: Sequence[Bifurcation]) -> str:
+    branch = branch[: _once_around(branch)]
+    orbits, parameter = [point.orbit for point in branch], branch[0].line.parameter
+    # Without ends that move apart, ⟨J⟩ is 0.
+    is_period = all(orbit.symmetry == Symmetry.SYNCHRONIZED or orbit.model.blocks == 1 for orbit in orbits)
+    values = np.array([orbit.period if is_period else orbit.mean_distance for orbit in orbits])
+    stable = np.array([point.multipliers.unstable_count == 0 for point in branch])
+    located = [(item.value, item.period if is_period else item.mean_distance, item.kind) for item in bifurcations]
+    marks = np.array(located, float).reshape(-1, 3).T
+    draw_branch(panel, *_with_ends(np.array([point.value for point in branch]), values, stable, *marks[:2]), "black")
+    draw_marks(panel, *marks)
+    for handle in orbit_handles(stable):
+        panel.add_line(handle)
+    for kind in sorted({item.kind for item in bifurcations}):
+        panel.plot([], [], kind.mark, linestyle="", label=kind.words, **MARK)
+    panel.set(xlabel=f"${symbol(parameter)}$", ylabel="period $T$" if is_period else r"$\langle J\rangle$")
+    model = orbits[0].model
+    return f"{model.law.name} law" + ("" if parameter == "a" else f", $a={model.a:g}$")
+
+
+def _once_around(branch: Sequence[BranchOrbit]) -> int:
+    """Return the number of orbits up to the first one that a closed branch passes again; that of all, if it is open."""
+    rows = np.array([(point.value, point.orbit.period, point.orbit.mean_distance) for point in branch])
+    side, upward = rows[:, 0] - rows[0, 0], np.array([point.tangent[-1] > 0.0 for point in branch])
+    for k in range(1, len(rows) - 1):
+        if side[k] * side[k + 1] < 0.0 and upward[k] == upward[k + 1] == upward[0]:
+            between = rows[k] + side[k] / (side[k] - side[k + 1]) * (rows[k + 1] - rows[k])
+            if (np.abs(between - rows[0]) <= CLOSED * np.ptp(rows, axis=0)).all():
+                return k + 2
+    return len(rows)
+
+
+def _with_ends(
+    x: np.ndarray, y: np.ndarray, stable: np.ndarray, ends: np.ndarray, values: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return a branch with the bifurcations at which its orbits become stable or unstable as further points."""
+    for k in np.flatnonzero(stable[1:] != stable[:-1])[::-1]:
+        low, high = sorted(x[k : k + 2])
+        if len(between := np.flatnonzero((ends > low) & (ends < high))):
+            n = between[np.abs(values[between] - y[k]).argmin()]
+            x, y, stable = (np.insert(row, k + 1, end) for row, end in ((x, ends[n]), (y, values[n]), (stable, True)))
+    return x, y, stable
+
+
+def draw_curve(curve: BifurcationCurve, axes: Axes | None = None) -> Figure:
+    """Draw a curve of bifurcations in the plane of its two parameters."""
+    return draw_panel(lambda panel: _curve(panel, curve), axes)
+
+
+def _curve(panel: Axes, curve: BifurcationCurve) -> str:
+    x, y = curve.values.T
+    look = {"linestyle": dashes(curve.kind), "marker": lone_marker(x), "markersize": 3.5}
+    panel.plot(x, y, color="black", linewidth=1.0, label=curve.kind.words, **look)
+    first, second = curve.parameters
+    panel.set(xlabel=f"${symbol(first)}$", ylabel=f"${symbol(second)}$")
+    return f"{curve.orbits[0].model.law.name} law"

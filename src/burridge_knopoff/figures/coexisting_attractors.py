@@ -1,0 +1,56 @@
+"""⟨J⟩ and basin fractions of the attractors along a parameter, in the colours of their branches."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray
+from matplotlib.artist import Artist
+from matplotlib.figure import Figure
+
+from burridge_knopoff.attractors.lookup import branch_names
+from burridge_knopoff.figures.basin_fractions import UNDETERMINED_STATES, draw_fractions, interval_handle
+from burridge_knopoff.figures.branches import branch_colors
+from burridge_knopoff.figures.mean_distance import branch_handles, draw_attractors
+from burridge_knopoff.figures.parameter_panels import constant, symbol
+from burridge_knopoff.figures.single_panel import MOST_ENTRIES, shortened
+from burridge_knopoff.figures.style import (
+    begin_at_zero,
+    label_panels,
+    legend_below,
+    legend_entries,
+    new_figure,
+    page_width,
+    say,
+    show_all,
+    styled,
+)
+
+
+@styled
+def draw(attractors: xarray.Dataset) -> Figure:
+    """Draw ⟨J⟩ of the attractors above the fractions of the sampled states that reach them, a column for each law.
+
+    attractors : in the form of `attractors.nc`, along any one parameter
+    """
+    (parameter,) = (str(name) for name in attractors["branch"].dims if name not in ("law", "attractor"))
+    laws, colors = np.atleast_1d(constant(attractors, "law")), branch_colors(attractors)
+    figure, panels = new_figure(page_width(len(laws)), 5.2, rows=2, columns=len(laws))
+    for column, law in enumerate(laws):
+        above, below = panels[column], panels[len(laws) + column]
+        part = attractors.sel(law=law) if "law" in attractors.dims else attractors
+        draw_attractors(above, part, parameter, colors, 2.6)
+        if (part["branch"] < 0).all():
+            say(above, "no attractor was found")
+        draw_fractions(below, part, parameter, colors)
+        show_all(above, attractors[parameter].values)
+        below.set_xlabel(f"${symbol(parameter)}$")
+    begin_at_zero(panels[0])
+    panels[0].set_ylabel(r"$\langle J\rangle$")
+    panels[len(laws)].set(ylabel="fraction of initial states", ylim=(-0.02, 1.02))
+    others: list[Artist] = [interval_handle()] if attractors["sample_count"].any() else []
+    shares, names = legend_entries(panels[len(laws) :])
+    others += [handle for handle, name in zip(shares, names, strict=True) if name == UNDETERMINED_STATES]
+    branches = branch_handles(colors, branch_names(attractors))
+    legend_below(figure, [*shortened(branches, MOST_ENTRIES - len(others)), *others])
+    label_panels(panels, [f"{law} law{end}" for end in ("", ": basin fractions") for law in laws])
+    return figure
