@@ -51,7 +51,7 @@ FORMS = """
 def forms_() -> None:
     import numpy as np
     from burridge_knopoff import Chain, InitialState, Model, SearchSettings, Settings, basin_map, find_attractors
-    from burridge_knopoff import fit_slope, label_states, law_of, simulate, sweep
+    from burridge_knopoff import continue_attractors, fit_slope, follow, label_states, law_of, simulate, sweep
     model = Model(Chain(3, coupling=(1.0, 1.5), pulling=[1.0, 2.0, 1.0]), law_of("linearized", 0.08))
     own = InitialState("own", (-0.9, -1.1, -1.0), 0.1)
     run = simulate(model, initial=own, settings=Settings(window=100.0))
@@ -61,6 +61,10 @@ def forms_() -> None:
     simulate(model, initial=run.final, transient=0, window=100)
     simulate({"formula": "1 - c*a*u", "c": 0.5}, 0.1)
     sweep(model, np.linspace(0.1, 0.2, 3), v=0.2)
+    branch = follow(model, (0.07, 0.09), initial=run, parameter="a")
+    follow(branch[0].orbit, [0.07, 0.09])
+    follow("stribeck", 0.08, (0.07, 0.09), initial="plus", sigma=0.05)
+    continue_attractors(model, starts=[run], samples=12, progress=True, v=[0.05, 0.1])
     sweep("carlson_langer", [0.1, 1], sigma=[0.01, 0.02], window=500)
     find_attractors(model, SearchSettings(samples=12), starts=["plus", own])
     attractors, labels = find_attractors(law_of("nonlinear", 0.1), 0.1, samples=12)

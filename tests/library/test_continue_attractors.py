@@ -15,6 +15,7 @@ from burridge_knopoff import (
     label_states,
     law_of,
     locate_bifurcations,
+    plot,
     synchronized_orbit,
 )
 from burridge_knopoff.continuation.branch_changes import branch_changes
@@ -127,6 +128,13 @@ def test_coordinates_tell_the_model_and_the_parameter(along_a, along_v):
     assert along_v["a"].item() == 0.09
     assert "v" not in along_v.attrs
     assert along_v["branch"].dims == ("v", "attractor")
+
+
+def test_branches_are_drawn_along_the_parameter(along_v):
+    above, below = plot(along_v).axes
+    assert below.get_xlabel() == "$v$"
+    heights = np.concatenate([np.ravel(line.get_ydata()) for line in above.lines])
+    assert np.nanmax(heights) == pytest.approx(np.nanmax(along_v["mean_distance"]), rel=1e-6)
 
 
 def inside(data, kind, value):

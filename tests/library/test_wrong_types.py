@@ -77,7 +77,8 @@ def correct_calls():
         "find_attractors": {"law": "linearized", "a": 0.08, "settings": SEARCH, "starts": ["plus"]},
         "continue_attractors": {
             "law": "linearized",
-            "a": [0.08],
+            "a": 0.08,
+            "coupling": [1.0],
             "settings": SEARCH,
             "refine": 1.0,
             "starts": ["plus"],

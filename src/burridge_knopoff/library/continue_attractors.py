@@ -68,9 +68,9 @@ def continue_attractors(
 
     Source: G. Datseris, K. Luiz Rossi and A. Wagemakers, Chaos 33 (2023) 073151.
 
-    >>> from burridge_knopoff import continue_attractors
-    >>> quick = {"samples": 12, "fraction_width": 0.2, "transient": 1000, "window": 800}
-    >>> data = continue_attractors("linearized", [0.08, 0.09], refine=0.01, cores=1, **quick)
+    >>> from burridge_knopoff import SearchSettings, continue_attractors
+    >>> quick = SearchSettings(samples=12, fraction_width=0.2, transient=1000, window=800)
+    >>> data = continue_attractors("linearized", [0.08, 0.09], quick, refine=0.01, cores=1)
     >>> data.branch.values.tolist(), data.branch_name.values[:2].tolist()
     ([[0, 1, 2, -1], [1, 2, 3, 3]], ['synchronized', 'alternating (1)'])
     >>> data.from_branch.values.tolist(), data.to_branch.values.tolist()
