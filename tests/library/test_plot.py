@@ -174,10 +174,21 @@ def test_attractors_along_a_parameter(maps):
     shares = sorted(line[1].item() for line in lines(fraction) if np.isfinite(line[1]).all())
     assert shares == pytest.approx(sorted(attractors.basin_fraction.values[attractors.branch.values >= 0].tolist()))
     assert [*attractors.branch_name.values, "95 % interval"] == legend(figure)
-    along_v = attractors.isel(law=0).rename(a="v")
-    mean, fraction = plot(along_v).axes
+
+
+def test_attractors_along_another_parameter(maps):
+    """As `continue_attractors` returns them: one law and one a, and the changes of branches."""
+    changes = {"change": [0, 2, 1], "grid_low": [0.07, 0.1, 0.08], "grid_high": [0.075, 0.11, 0.09]}
+    along = maps[1].isel(law=0).rename(a="v").assign_coords(a=0.05)
+    along = along.assign({name: ("bifurcation", values) for name, values in changes.items()})
+    figure = plot(along)
+    mean, fraction = figure.axes
     assert fraction.get_xlabel() == "$v$"
-    assert len(lines(mean)) == len(drawn)
+    assert mean.get_title(loc="left") == "(a) linearized law, $a=0.05$"
+    assert len(lines(mean)) == np.count_nonzero(along.branch >= 0)
+    spans = [(patch.get_x(), patch.get_x() + patch.get_width()) for patch in mean.patches]
+    assert np.array(spans) == pytest.approx(np.array([(0.07, 0.075), (0.08, 0.09)]))
+    assert "a branch begins or ends" in legend(figure)
 
 
 def test_attractors_of_a_model(attractors):
@@ -283,8 +294,8 @@ def test_pictures_side_by_side_have_the_look_of_their_figure(branch, attractors,
         assert axes.xaxis.label.get_fontfamily() == ["sans-serif"]
 
 
-def test_a_notebook_shows_a_picture(branch, maps, run):
-    for result in (branch, maps, run, run.to_dataset()):
+def test_a_notebook_shows_a_picture(branch, run):
+    for result in (branch, run.to_dataset()):
         assert plot(result)._repr_png_().startswith(b"\x89PNG")
 
 

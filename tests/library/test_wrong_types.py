@@ -105,6 +105,7 @@ def correct_calls():
         "mode_amplitudes": {"model": MODEL, "state": STATE, "duration": 10.0},
         "multipliers": {"orbit": orbit},
         "open_study": {"results": "results/nothing"},
+        "plot": {"result": branch, "axes": None},
         "record_events": {
             "model": DROPPING,
             "state": REST,

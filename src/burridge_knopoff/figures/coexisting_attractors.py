@@ -5,15 +5,18 @@ from __future__ import annotations
 import numpy as np
 import xarray
 from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.attractors.lookup import branch_names
+from burridge_knopoff.continuation.branch_changes import Change
 from burridge_knopoff.figures.basin_fractions import UNDETERMINED_STATES, draw_fractions, interval_handle
 from burridge_knopoff.figures.branches import branch_colors
 from burridge_knopoff.figures.mean_distance import branch_handles, draw_attractors
-from burridge_knopoff.figures.parameter_panels import constant, symbol
+from burridge_knopoff.figures.parameter_panels import constant, fixed_a, symbol
 from burridge_knopoff.figures.single_panel import MOST_ENTRIES, shortened
 from burridge_knopoff.figures.style import (
+    SHADE,
     begin_at_zero,
     label_panels,
     legend_below,
@@ -21,6 +24,7 @@ from burridge_knopoff.figures.style import (
     new_figure,
     page_width,
     say,
+    shade_entry,
     show_all,
     styled,
 )
@@ -30,7 +34,8 @@ from burridge_knopoff.figures.style import (
 def draw(attractors: xarray.Dataset) -> Figure:
     """Draw ⟨J⟩ of the attractors above the fractions of the sampled states that reach them, a column for each law.
 
-    attractors : in the form of `attractors.nc`, along any one parameter
+    attractors : in the form of `attractors.nc`, along any one parameter; with the changes of branches, as of
+        `continue_attractors`, the ranges in which a branch begins or ends are shaded
     """
     (parameter,) = (str(name) for name in attractors["branch"].dims if name not in ("law", "attractor"))
     laws, colors = np.atleast_1d(constant(attractors, "law")), branch_colors(attractors)
@@ -41,6 +46,7 @@ def draw(attractors: xarray.Dataset) -> Figure:
         draw_attractors(above, part, parameter, colors, 2.6)
         if (part["branch"] < 0).all():
             say(above, "no attractor was found")
+        _changes(above, part)
         draw_fractions(below, part, parameter, colors)
         show_all(above, attractors[parameter].values)
         below.set_xlabel(f"${symbol(parameter)}$")
@@ -50,7 +56,20 @@ def draw(attractors: xarray.Dataset) -> Figure:
     others: list[Artist] = [interval_handle()] if attractors["sample_count"].any() else []
     shares, names = legend_entries(panels[len(laws) :])
     others += [handle for handle, name in zip(shares, names, strict=True) if name == UNDETERMINED_STATES]
+    if any(panel.patches for panel in panels):
+        others.append(shade_entry("a branch begins or ends"))
     branches = branch_handles(colors, branch_names(attractors))
     legend_below(figure, [*shortened(branches, MOST_ENTRIES - len(others)), *others])
-    label_panels(panels, [f"{law} law{end}" for end in ("", ": basin fractions") for law in laws])
+    at = "" if parameter == "a" else fixed_a(attractors)
+    label_panels(panels, [f"{law} law{at}{end}" for end in ("", ": basin fractions") for law in laws])
     return figure
+
+
+def _changes(panel: Axes, attractors: xarray.Dataset) -> None:
+    """Shade the ranges in which a branch begins or ends, if they are there."""
+    if "change" not in attractors:
+        return
+    rows = (attractors[name].values for name in ("change", "grid_low", "grid_high"))
+    for change, low, high in zip(*rows, strict=True):
+        if change in (Change.BEGINNING, Change.END):
+            panel.axvspan(low, high, color=SHADE, linewidth=0, zorder=0)

@@ -117,6 +117,11 @@ def constant(data: xarray.Dataset, name: str) -> np.ndarray:
     return data[name].values if name in data.coords else np.array(data.attrs.get(name, ""))
 
 
+def fixed_a(data: xarray.Dataset) -> str:
+    """Return the end of a title with a, if it is the same for the whole Dataset."""
+    return f", $a={data['a'].item():g}$" if "a" in data.coords and data["a"].size == 1 else ""
+
+
 def symbol(name: str) -> str:
     """Return the name of a parameter for mathematical text: a Latin or Greek letter slanted, a word upright."""
     if name in GREEK:

@@ -13,7 +13,14 @@ from matplotlib.figure import Figure
 from burridge_knopoff.figures import grid_distance
 from burridge_knopoff.figures.mean_distance import draw_runs
 from burridge_knopoff.figures.palette import dashes, law_color, law_symbol, state_symbol
-from burridge_knopoff.figures.parameter_panels import constant, draw_map, panel_parts, symbol, varied_parameters
+from burridge_knopoff.figures.parameter_panels import (
+    constant,
+    draw_map,
+    fixed_a,
+    panel_parts,
+    symbol,
+    varied_parameters,
+)
 from burridge_knopoff.figures.single_panel import draw_panel
 from burridge_knopoff.figures.style import begin_at_zero, say, show_all
 
@@ -100,5 +107,4 @@ def _title(grid: xarray.Dataset, parameter: str) -> str:
     """Return what is the same for all runs: the law, the initial state and a."""
     words = [f"{grid['law'].item()} law"] if grid.sizes["law"] == 1 else []
     words += [f"from {grid['initial'].item()}"] if grid.sizes["initial"] == 1 else []
-    is_fixed = parameter != "a" and "a" in grid.coords and grid["a"].size == 1
-    return ", ".join([*words, *([f"$a={grid['a'].item():g}$"] if is_fixed else [])])
+    return ", ".join(words) + ("" if parameter == "a" else fixed_a(grid))

@@ -40,8 +40,9 @@ def plot(result: Any, axes: Axes | None = None) -> Figure:
         a `Catalogue`: slips in space and time, recurrence, rates, extents and intervals
         the Dataset of `sweep`: ⟨J⟩ with three standard errors over one parameter, a map over two, panels for more
         what `basin_map` returns, or its first Dataset: the basins, with the paper's initial states that lie in the
-            plane; its second Dataset, that of `continue_attractors`, or `attractors.nc` of a study: ⟨J⟩ and the basin
-            fraction of each branch
+            plane
+        the Dataset of `continue_attractors`, the second of `basin_map`, or `attractors.nc` of a study: ⟨J⟩ and the
+            basin fraction of each branch, and the ranges in which a branch begins or ends
         what `find_attractors` returns, or the list alone, and an `EdgeState`: positions x_1 and x_N at the returns, the
             stops of one block
         a `PeriodicOrbit`: U_i'(τ) in a period, and U_i' versus U_i − vτ
