@@ -2,9 +2,9 @@
 
     python benchmarks/durations.py config/paper.yaml config/smoke.yaml
 
-For each rule: the mean wall time of a job times its threads, and its size, at the smallest and at the largest work in
-these studies. Durations of rules that did not run are scaled as those of the others have changed. Other programs on
-the machine would count.
+For each rule: the mean wall time of a job times its threads, without the estimated time of its simulation, and its
+size, at the smallest and at the largest work in these studies. Durations of rules that did not run are scaled as those
+of the others have changed. Other programs on the machine would count.
 """
 
 import json
@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from replay import planned
 
-from snakemake_logger_plugin_study.durations import FILE, SHIPPED, measured_seconds, work_of
+from snakemake_logger_plugin_study.durations import FILE, SHIPPED, measured_seconds, run_seconds_of, work_of
 
 
 def main():
@@ -23,13 +23,14 @@ def main():
     jobs = defaultdict(lambda: defaultdict(list))
     for config in sys.argv[1:]:
         plan = planned(config, "all", "chains")
-        work = work_of(plan.study)
+        work, runs = work_of(plan.study), run_seconds_of(plan.study)
         files = {number: job.benchmark for number, job in plan.look_ahead().jobs.items()}
         for job in plan.workflow.dag.jobs:
             seconds = measured_seconds(files.get(plan.workflow.dag.jobid(job), ""), int(job.threads))
             if seconds is not None:
                 size = sum(path.stat().st_size for path in map(Path, job.output) if path.is_file())
-                jobs[job.rule.name][work.get(job.rule.name, work["all points"])].append((seconds, size))
+                rest = max(0.0, seconds - runs.get(job.rule.name, 0.0))
+                jobs[job.rule.name][work.get(job.rule.name, work["all points"])].append((rest, size))
     rules = {}
     for rule, by_work in jobs.items():
         rows = [[least, *np.mean(by_work[least], axis=0)] for least in sorted({min(by_work), max(by_work)})]

@@ -59,7 +59,7 @@ def recorded(config, cores=2):
 
 def estimates(run, seconds):
     """Return (moment, estimate, truth) of a run, in seconds, from its beginning to its end."""
-    run.durations = Durations(run.durations.work)
+    run.durations = Durations(run.durations.work, runs=run.durations.runs)
     ends = schedule(run.jobs, seconds, run.cores)
     end = max(ends.values())
     for moment in (end * step / MOMENTS for step in range(MOMENTS)):

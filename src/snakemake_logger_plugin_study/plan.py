@@ -13,7 +13,7 @@ from burridge_knopoff.outputs import benchmark_of, outputs, stage_of
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.study import Study
 from snakemake_logger_plugin_study import internals
-from snakemake_logger_plugin_study.durations import Durations, measured_seconds, work_of
+from snakemake_logger_plugin_study.durations import Durations, measured_seconds, run_seconds_of, work_of
 from snakemake_logger_plugin_study.run import Job, Run
 
 
@@ -68,7 +68,7 @@ class Plan:
             self.results,
             jobs,
             {job.rule.name for job in wanted},
-            Durations(work_of(self.study), last),
+            Durations(work_of(self.study), last, run_seconds_of(self.study)),
             cores,
             f"on {format_count(cores, 'core')}",
             internals.is_touching(self.workflow),

@@ -7,8 +7,8 @@ from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.settings import Settings
 
 # Measured (docs/performance.md): events per block and time unit; CPU seconds per event and block of its group, without
-# perturbations and for each perturbation; memory per block.
-EVENTS, SECONDS, SECONDS_OF_PERTURBATION, BYTES = 0.2, 1.5e-7, 1e-7, 4500.0
+# perturbations and for each perturbation; memory per block; CPU seconds per step of rk4 and block.
+EVENTS, SECONDS, SECONDS_OF_PERTURBATION, BYTES, SECONDS_OF_STEP = 0.2, 1.5e-7, 1e-7, 4500.0, 6.5e-8
 #: Expansions per time unit and unit of the highest rate of a chain, each as expensive as an event: 0.1 to 0.6 in chains
 #: of 1 to 40 blocks whose dashpots or springs are stiff.
 EXPANSIONS = 0.2
@@ -27,9 +27,21 @@ def cost_of(model: Model, begun: ChainState, settings: Settings) -> tuple[float,
     return max(EVENTS * model.blocks, _expansions(model.chain)) * event, BYTES * model.blocks
 
 
+def run_seconds(model: Model, begun: ChainState, settings: Settings) -> float:
+    """Return an estimate of the CPU seconds of a run; begun : see `cost_of`."""
+    if settings.solver == "rk4":
+        return settings.duration / settings.step * model.blocks * SECONDS_OF_STEP
+    return cost_of(model, begun, settings)[0] * settings.duration
+
+
+def stiffness(chain: Chain) -> float:
+    """Return how many times longer runs take because of the highest rate of a chain, at least 1."""
+    return max(1.0, _expansions(chain) / (EVENTS * len(chain.driving)))
+
+
 def is_stiff(chain: Chain) -> bool:
     """Return whether the highest rate of a chain, not its events, decides how long a run takes."""
-    return _expansions(chain) > 10.0 * EVENTS * len(chain.driving)
+    return stiffness(chain) > 10.0
 
 
 def _expansions(chain: Chain) -> float:

@@ -33,7 +33,7 @@ def _cost_remarks(study: Study) -> list[str]:
     if not is_stiff(stiffest.chain):
         return []
     note = cost_note(stiffest, stiffest.begin(study.state(initial), settings.start), settings)
-    return [f"each simulation: {note}; the time estimated for a first run leaves this out"] if note else []
+    return [f"each simulation: {note}"] if note else []
 
 
 def _part_remarks(study: Study, config: Mapping[str, Any]) -> Iterator[str]:
