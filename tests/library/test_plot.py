@@ -276,6 +276,15 @@ def test_a_closed_branch_is_drawn_once(orbit):
     assert np.ptp(drawn[0]) == pytest.approx(np.ptp([point.value for point in points]))
 
 
+def test_stable_and_unstable_orbits_meet_at_a_fold():
+    points = follow("linearized", 0.15, initial="minus", interval=(0.145, 0.16))
+    fold, *_ = bifurcations = list(locate_bifurcations(points))
+    assert fold.kind == BifurcationKind.FOLD
+    stable, unstable, *_ = lines(plot((points, bifurcations)).axes[0])
+    assert stable[:, -1].tolist() == unstable[:, 0].tolist() == [fold.value, fold.mean_distance]
+    assert stable[0].max() == fold.value
+
+
 def test_a_curve_of_bifurcations(branch):
     curve = follow_bifurcation(branch[1][0], ("a", "threshold"), (0.95, 1.05))
     figure = plot(curve)

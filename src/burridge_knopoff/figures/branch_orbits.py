@@ -64,9 +64,10 @@ def _with_ends(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return a branch with the bifurcations at which its orbits become stable or unstable as further points."""
     for k in np.flatnonzero(stable[1:] != stable[:-1])[::-1]:
-        low, high = sorted(x[k : k + 2])
-        if len(between := np.flatnonzero((ends > low) & (ends < high))):
-            n = between[np.abs(values[between] - y[k]).argmin()]
+        # A fold lies beyond both neighbours.
+        near = np.flatnonzero(np.abs(ends - x[k]) <= np.abs(np.diff(x[max(k - 1, 0) : k + 2])).sum())
+        if len(near):
+            n = near[np.abs(values[near] - y[k : k + 2].mean()).argmin()]
             x, y, stable = (np.insert(row, k + 1, end) for row, end in ((x, ends[n]), (y, values[n]), (stable, True)))
     return x, y, stable
 
