@@ -142,7 +142,7 @@ def test_runs_where_initial_states_are_taken():
     assert label_states(run.model, attractors, [[0.989, -0.993, -0.991]], [[0.099, 0.1012, 0.1023]])[0] == labels[-3]
     over_v = sweep(run.model, initial=["minus", run], transient=0, window=50)
     again = simulate(run.model, run, transient=0, window=50)
-    assert over_v.mean_distance.sel(initial="own").item() == again.mean_distance
+    assert over_v.mean_distance.sel(initial="continued").item() == again.mean_distance
     basins, _ = basin_map(run.model, run, pixels=2, **options)
     position = run.final.position + run.model.sliding_offset
     expected, _ = basin_map(run.model, (position, run.final.velocity), pixels=2, **options)

@@ -7,7 +7,6 @@ import pytest
 import xarray
 
 from burridge_knopoff import Chain, Model, law_of, simulate, sweep
-from burridge_knopoff.dataset.point import run_coordinates
 from tests.refused import refused
 
 SHORT = {"transient": 50.0, "window": 50.0, "batches": 2}
@@ -35,7 +34,7 @@ def test_a_sweep_has_the_numbers_of_single_runs():
 
 def test_the_variables_that_are_left_out_are_those_over_the_named_dimensions():
     run = simulate("linearized", 0.1, **SHORT).to_dataset()
-    missing = set(run.variables) - set(run_coordinates(run.attrs)) - set(sweep("linearized", 0.1, **SHORT).variables)
+    missing = set(run.variables) - set(sweep("linearized", 0.1, **SHORT).variables)
     named = sweep.__doc__.partition("are left out")[2].partition(". ")[0]
     assert missing == {name for name, item in run.variables.items() if any(f"`{key}`" in named for key in item.dims)}
 

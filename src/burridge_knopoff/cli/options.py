@@ -11,11 +11,10 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from burridge_knopoff.laws import LAWS, Law, law_of, unknown_law
-from burridge_knopoff.library.state_forms import OWN
 from burridge_knopoff.messages import command, format_value
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.fields import FOLLOWS, REQUIRED, fields_of
-from burridge_knopoff.model.initial import PAPER_STATES, STATE_NAME, InitialState, initial_state
+from burridge_knopoff.model.initial import OWN, PAPER_STATES, STATE_NAME, InitialState, initial_state
 from burridge_knopoff.model.model import LAW_NAME, Model
 from burridge_knopoff.model.ranges import Either, Interval, Number, OneOf, Several, TrueOrFalse, Whole
 from burridge_knopoff.provenance.files import check_target

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 @show_settings(SearchSettings)
 def basin_map(
     law: Model | GivenLaw,
-    a: float | None = None,
+    a: Any = None,
     initial: Initial = "minus",
     *,
     pixels: int = 64,

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 @show_settings(SearchSettings)
 def continue_attractors(
     law: Model | GivenLaw,
-    a: float | Sequence[float] | np.ndarray | None = None,
+    a: Any = None,
     settings: SearchSettings | None = None,
     motion: MotionSettings = MOTION,
     *,

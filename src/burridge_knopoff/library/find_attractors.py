@@ -26,7 +26,7 @@ from burridge_knopoff.values import elements, instance_of
 @show_settings(SearchSettings)
 def find_attractors(
     law: Model | GivenLaw,
-    a: float | None = None,
+    a: Any = None,
     settings: SearchSettings | None = None,
     motion: MotionSettings = MOTION,
     *,

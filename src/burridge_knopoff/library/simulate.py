@@ -20,7 +20,7 @@ from burridge_knopoff.running.simulation import run
 @show_settings(Settings)
 def simulate(
     law: Model | GivenLaw = "linearized",
-    a: float | None = None,
+    a: Any = None,
     initial: Initial = "minus",
     settings: Settings | None = None,
     *,

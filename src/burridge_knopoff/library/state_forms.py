@@ -11,7 +11,15 @@ import numpy as np
 
 from burridge_knopoff.messages import format_value, refusal
 from burridge_knopoff.model.fields import Field, Keys, fields_of
-from burridge_knopoff.model.initial import PAPER_STATES, STATE_NAME, InitialState, has_paper_numbers, initial_state
+from burridge_knopoff.model.initial import (
+    CONTINUED,
+    OWN,
+    PAPER_STATES,
+    STATE_NAME,
+    InitialState,
+    has_paper_numbers,
+    initial_state,
+)
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.cost import cost_note, is_stiff
 from burridge_knopoff.running.runner import check_state
@@ -22,9 +30,6 @@ from burridge_knopoff.values import elements, is_sequence
 #: A state: minus or plus, an `InitialState`, {"position": …, "velocity": …} or (position, velocity); or that of a
 #: motion, a `ChainState` or a run, meaning its final state.
 Initial = str | InitialState | Mapping[str, Any] | Sequence[Sequence[float]] | np.ndarray | ChainState | Trajectory
-
-#: The name of a state that is given without a name.
-OWN = "own"
 
 _KEYS = Keys({"name": Field(STATE_NAME, "name of the state", OWN), **fields_of(InitialState)})
 _FORMS = f"{' | '.join(PAPER_STATES)}, InitialState, {{'position': …, 'velocity': …}}, (position, velocity), or a Run"
@@ -61,7 +66,7 @@ def is_list_of_states(initial: Any) -> bool:
 
 
 def named_states(initial: Any) -> dict[str, InitialState | ChainState | Trajectory]:
-    """Return a state or a list of states in any form by name; a state of a motion and numbers alone are called `own`.
+    """Return a state or a list of states by name: numbers alone are called `own`, a state of a motion `continued`.
 
     Raises ValueError, one line, for what is no state, for numbers without a name in a list, and for equal names.
     """
@@ -74,7 +79,7 @@ def named_states(initial: Any) -> dict[str, InitialState | ChainState | Trajecto
             named = '{"name": …, "position": …, "velocity": …}'
             raise ValueError(f"{key}: got {format_value(item)}, expected a state with a name, such as {named}")
         state = item if isinstance(item, ChainState | Trajectory) else given_state(item, key)
-        name = getattr(state, "name", OWN)
+        name = state.name if isinstance(state, InitialState) else CONTINUED
         if name in states:
             raise ValueError(f"{key}: got the name {name!r} twice, expected another one: InitialState(name, …)")
         states[name] = state

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from burridge_knopoff.dataset.point import POINT_VARIABLES, point_attributes, point_values
+from burridge_knopoff.dataset.point import POINT_VARIABLES, point_attributes, point_values, run_coordinates
 from burridge_knopoff.dataset.variables import PERIOD, Variable, flag
 from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings, takes_model
 from burridge_knopoff.library.model_forms import GivenLaw, model_of
@@ -75,7 +75,7 @@ class _Point:
 @show_settings(Settings)
 def sweep(
     law: Model | GivenLaw | Sequence[GivenLaw],
-    a: float | Sequence[float] | np.ndarray | None = None,
+    a: Any = None,
     initial: Initial | Sequence[Initial] = "minus",
     settings: Settings | None = None,
     *,
@@ -253,6 +253,10 @@ def _dataset(
         data[plain[name]] = plain[name], values, item.all_attributes()
     first, *others = (attributes for _, attributes in runs)
     common = {key: value for key, value in first.items() if all(other.get(key) == value for other in others)}
+    for name, (item, value) in run_coordinates(first).items():
+        if name not in data and not common.keys().isdisjoint((f"law_{name}", f"chain_{name}")):
+            coordinates.add(name)
+            data[name] = (), value, item.all_attributes()
     return xarray.Dataset(data, attrs=common).set_coords(coordinates)
 
 

@@ -14,6 +14,8 @@ from burridge_knopoff.model.ranges import Either, Number, Several, Text, Whole
 from burridge_knopoff.model.springs import MAXIMUM_BLOCKS
 from burridge_knopoff.values import instance_of
 
+#: Names of a state that is given without one: numbers alone, and a state of another run.
+OWN, CONTINUED = "own", "continued"
 STATE_NAME = Text("letters, digits and _, at most 32, a letter first", "[A-Za-z][A-Za-z0-9_]{0,31}")
 COORDINATE = Number(-1e6, 1e6)
 _BLOCK_VALUES = Either((COORDINATE, Several(COORDINATE, 1, MAXIMUM_BLOCKS), RandomNumbers(COORDINATE)))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from burridge_knopoff.kernel._core import Exponents
-from burridge_knopoff.model.initial import ContinuedState, InitialState
+from burridge_knopoff.model.initial import CONTINUED, ContinuedState, InitialState
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.runner import Runner, check_state, new_observer
 from burridge_knopoff.running.settings import Settings
@@ -68,7 +68,7 @@ def prepare(
     if isinstance(initial, ChainState):
         check_state(model, initial)
         begun, position = initial, initial.position + model.sliding_offset
-        initial = ContinuedState("continued", tuple(position.tolist()), tuple(begun.velocity.tolist()))
+        initial = ContinuedState(CONTINUED, tuple(position.tolist()), tuple(begun.velocity.tolist()))
     else:
         begun = model.begin(initial, settings.start)
     runner = _runner(model, settings, begun.time, section_only, stops_only)
