@@ -15,6 +15,7 @@ from burridge_knopoff.dataset.point import POINT_VARIABLES, point_attributes, po
 from burridge_knopoff.dataset.variables import PERIOD, Variable, flag
 from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings, takes_model
 from burridge_knopoff.library.model_forms import GivenLaw, model_of
+from burridge_knopoff.library.progress import Progress, progress_bar
 from burridge_knopoff.library.state_forms import (
     Initial,
     final_state,
@@ -84,6 +85,7 @@ def sweep(
     blocks: int | None = None,
     contact: str | None = None,
     cores: int | None = None,
+    progress: Progress = False,
     **by_name: Any,
 ) -> xarray.Dataset:
     """Run a simulation at each of several a, or at each point of a grid over laws, initial states and any parameters.
@@ -99,6 +101,7 @@ def sweep(
         fifth of the time of a run of default length
     settings, chain, blocks, contact : see `simulate`
     cores : number of simultaneous runs, by default the number of cores; results do not depend on it
+    progress : True for a bar, in a terminal or a notebook, if rich or tqdm is installed; "always" for one in a pipe too
 
     Each list is a dimension of the Dataset: law, initial, a, then the other parameters in the order given; that of
     `mass[3]` is `mass_3`. The variables are those of a point file (docs/data.md) with one value per run, batch, block,
@@ -141,10 +144,15 @@ def sweep(
     warn_of_cost(costly.model, costly.state, chosen)
     size = min(LOCKSTEP_RUNS, -(-len(points) // cores))
 
-    def run_from(first: int) -> list[tuple[dict[str, Any], dict[str, Any]]]:
-        return _run_together(points[first : first + size], chosen, motion)
+    with progress_bar(progress, len(points), "sweep") as advance:
 
-    runs = map_in_threads(cores, run_from, range(0, len(points), size))
+        def run_from(first: int) -> list[tuple[dict[str, Any], dict[str, Any]]]:
+            together = points[first : first + size]
+            runs = _run_together(together, chosen, motion)
+            advance(len(together))
+            return runs
+
+        runs = map_in_threads(cores, run_from, range(0, len(points), size))
     dataset = _dataset(axes, points[0], next(iter(states)), [*chained.from_iterable(runs)])
     if remark := "; ".join(_remarks(states, axes)):
         dataset.attrs["remark"] = remark
