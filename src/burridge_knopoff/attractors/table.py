@@ -65,12 +65,17 @@ NOTHING = {"comment": "-1 if there is none or it is undetermined"}
 _SYMMETRY = flag("i1", {-1: "none", **{int(item): item.name.lower() for item in Symmetry}})
 _SLOW = flag("i1", {-1: "none", 0: "no", 1: "yes"})
 _SIDE = "side of the branch: 1 and -1 for the two of a mirror pair, 0 for a set that is its own mirror image"
-_POINTS = "period in section points: number of upward section points after which the state of all blocks "
-"repeats, 0 if it does not"
-_RETURNS = "returns until capture: number of successive returns within the radius after which a trajectory "
-"counts as captured"
-_PATIENCE = "patience: time by which a captured trajectory may still reach a periodic orbit embedded in the "
-"attractor; 0 if none"
+_POINTS = (
+    "period in section points: number of upward section points after which the state of all blocks "
+    "repeats, 0 if it does not"
+)
+_RETURNS = (
+    "returns until capture: number of successive returns within the radius after which a trajectory counts as captured"
+)
+_PATIENCE = (
+    "patience: time by which a captured trajectory may still reach a periodic orbit embedded in the "
+    "attractor; 0 if none"
+)
 _POSITION = "position on the attractor: of one state, at a stop of the block nearest to an end that stops often"
 _DRIVER = {"comment": "relative to the driver: U - v*tau, U the position of the paper"}
 
