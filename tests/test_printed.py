@@ -30,7 +30,19 @@ from tests.refused import refused
 
 #: Clears the screen, sets the title of a terminal, begins a line, turns the direction of letters, goes back, rings.
 CONTROLS = "\x1b[2J\x1b]0;title\x07\nremake: rm -rf ~\r\u202e\u2066\x9b1A\x08\x00\x7f\u2028"
+#: Attributes that are read, not printed: others than these values are refused.
+UNDERSTOOD = ("checksum", "source_module", "flag_meanings", "_FillValue", "_Encoding")
 PROGRAMS = [*PACKAGE.rglob("*.py"), *(PACKAGE.parent / "snakemake_logger_plugin_study").glob("*.py")]
+
+
+def test_show_refuses_a_text_of_an_unknown_encoding(written, tmp_path, capsys):
+    path = tmp_path / "point.nc"
+    path.write_bytes((written / path.name).read_bytes())
+    with netCDF4.Dataset(path, "a") as dataset:
+        dataset["law"].setncattr("_Encoding", f"utf-8 {CONTROLS}".replace("\0", ""))
+    forge(path)
+    assert main(["show", str(path)]) == 2
+    assert capsys.readouterr().err.splitlines() == [f"bk show: {path}: has a text of an unknown encoding"]
 
 
 def shell_words(line, folder):
@@ -113,7 +125,7 @@ def test_show_escapes_controls_in_every_attribute(written, tmp_path, capsys, nam
         owners = [dataset] if place == "global" else dataset.variables.values()
         for owner in owners:
             for key, value in vars(owner).items():
-                if isinstance(value, str) and key not in ("checksum", "source_module", "flag_meanings", "_FillValue"):
+                if isinstance(value, str) and key not in UNDERSTOOD:
                     owner.setncattr(key, f"{value} {CONTROLS}".replace("\0", ""))
             owner.setncattr("comment", CONTROLS.replace("\0", ""))
     forge(path)

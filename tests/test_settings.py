@@ -29,6 +29,7 @@ from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import ContinuedState, PaperState
+from burridge_knopoff.model.physical_units import PhysicalUnits
 from burridge_knopoff.model.ranges import Interval, Number, OneOf, Several, TrueOrFalse, Whole
 from burridge_knopoff.motion.chain_settings import Sample
 from burridge_knopoff.motion.settings import MOTION
@@ -40,6 +41,7 @@ REQUIRED = {
     Model: {"chain": Chain(3), "law": law_of("linearized", 0.08)},
     InitialState: {"name": "own", "position": -0.9, "velocity": 0.1},
     PaperState: {"name": "own", "position": -0.9, "velocity": 0.1},
+    PhysicalUnits: {"mass": 0.5, "stiffness": 200.0, "friction": 2.0},
 }
 STEPS = ("smallest_step", "first_step", "largest_step")
 

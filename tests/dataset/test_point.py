@@ -82,7 +82,7 @@ def test_the_file_and_the_dataset_have_the_same_content(trajectory, path):
         # These names have other meanings in a file.
         (
             {"formula": "1 - a*u + 0*(event + time + initial + mass)", "event": 1, "time": 2, "initial": 3, "mass": 4},
-            {"threshold": "uniform 0.9 1.1 seed 1"},
+            {"threshold": {"random": "uniform", "low": 0.9, "high": 1.1, "seed": 1}},
             {"coupling": 1.0, "mass": 1.0, "damping": 0.0, "pulling_damping": 0.0},
         ),
     ],

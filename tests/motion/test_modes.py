@@ -205,7 +205,7 @@ def test_a_state_or_a_chain_that_does_not_fit_is_refused():
         mode_amplitudes(Model(Chain(4), law_of("linearized", 0.06)), state)
     long = Model(Chain(20_000), law_of("linearized", 0.06))
     with refused("model.blocks: 20000"):
-        mode_amplitudes(long, state)
+        mode_amplitudes(long, (np.zeros(20_000), np.full(20_000, 0.1)))
 
 
 def test_a_line_without_motion_or_beyond_the_sampling_has_no_shares():

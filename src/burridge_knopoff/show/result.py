@@ -127,7 +127,10 @@ def open_result(path: str | Path) -> Result:
         if study and path.suffix == ".nc":
             raise
         raise ValueError(f"{path}: {error.reason}") from None
-    data = xarray.load_dataset(path, engine="netcdf4")
+    try:
+        data = xarray.load_dataset(path, engine="netcdf4")
+    except LookupError:
+        raise ValueError(f"{path}: has a text of an unknown encoding") from None
     if not all(isinstance(data.attrs.get(name), str) for name in provenance(__name__)):
         raise ValueError(f"{path}: does not say which software and sources made it")
     result = Result(path, data, study, read_study_record(study) if study else {}, files)
