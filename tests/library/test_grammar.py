@@ -17,6 +17,9 @@ from burridge_knopoff import (
     MotionKind,
     MotionSettings,
     basin_map,
+    block_frequencies,
+    continue_attractors,
+    edge_state,
     find_attractors,
     label_states,
     law_of,
@@ -212,11 +215,52 @@ def test_the_name_of_a_setting_is_no_parameter_of_a_law():
         (lambda: limit_cycle("linearized", 0.1, "pluss"), ("state: 'pluss'", "did you mean plus")),
         (lambda: find_attractors("linearized", 0.1, starts=["plus", "other"]), ("starts[1]: 'other'",)),
         (lambda: synchronized_orbit("linearized"), ("a", "without a Model or a Law")),
+        (lambda: limit_cycle(simulate(MODEL, initial="plus", **SHORT)), ("law", "formula")),
+        (lambda: simulate("linearized", 0.1, mass=[1.0, 1.0, 1.2]), ("mass", "chain=Chain(…, mass=…)")),
+        (lambda: simulate("linearized", 0.1, ends="ring"), ("ends: 'ring'", "chain=Chain(…, ends=…)")),
+        (lambda: basin_map("linearized", 0.1, ([-0.9], [0.1])), ("blocks: 1", "U_N(0)")),
+        (lambda: edge_state("linearized", 0.1, "minus", "plus", [], duration=-1.0), ("duration: -1.0",)),
+        (lambda: sweep(["stribeck", "linearized"], 0.1, sigma=[0.1, 0.2]), ("law = 'linearized': sigma",)),
     ],
 )  # fmt: skip
 def test_what_does_not_fit_is_refused_in_one_line(call, words):
     with refused(*words):
         call()
+
+
+def test_no_parameter_takes_the_place_of_a_result():
+    """A coordinate of the name of a variable would replace its numbers."""
+    for name in ("period", "mean_distance", "status", "block", "batch", "law"):
+        law = {"formula": f"1 - {name}*a*u", name: 0.5}
+        if name != "law":
+            assert sweep(law, [0.1, 0.2], **SHORT).mean_distance.dims == ("a",)
+            with refused(name, "the name of a variable of the result"):
+                sweep(law, 0.1, **{name: [0.5, 1.0]}, **SHORT)
+    for name in ("kind", "branch", "number", "side", "attractor", "change"):
+        with refused(name, "the name of a variable of the result"):
+            continue_attractors({"formula": f"1 - {name}*a*u", name: 0.5}, 0.1, **{name: [0.5, 1.0]})
+
+
+def test_runs_that_begin_at_different_times():
+    """The times of their batches differ: they are in no coordinate."""
+    run = simulate("linearized", 0.08, "plus", transient=0.0, window=40.0)
+    runs = sweep("linearized", 0.08, [run, "minus", run.final], **SHORT)
+    assert runs.initial.values.tolist() == ["continued", "minus", "continued_2"]
+    assert runs.end_time.values.tolist() == [70.0, 30.0, 70.0]
+    assert "batch" not in runs.variables
+    assert runs.mean_distance.values[0] == runs.mean_distance.values[2]
+    alone = sweep("linearized", 0.08, run, **SHORT)
+    assert alone.batch.values.tolist() == [47.5, 62.5]
+    assert np.array_equal(runs.batch_mean_distance[0], alone.batch_mean_distance)
+
+
+def test_a_may_be_named_where_a_state_follows_the_law():
+    expected = block_frequencies("linearized", 0.08, "plus", duration=200.0)
+    assert said(block_frequencies("linearized", "plus", a=0.08, duration=200.0)) == said(expected)
+    attractors = CALLS["edge_state"]["attractors"]
+    position, velocity = [[-0.9, -1.0, -1.0]], [[0.1, 0.1, 0.1]]
+    by_name = label_states("linearized", attractors, position, velocity, a=0.08)
+    assert said(by_name) == said(label_states("linearized", 0.08, attractors, position, velocity))
 
 
 def test_plain_rows_by_their_number_of_blocks():
@@ -255,7 +299,6 @@ def test_a_sweep_over_laws_and_states():
         ("linearized", ["plus", "plus"], ("initial[1]", "twice")),
         ("linearized", [], ("initial", "no state")),
         (["linearized", "linearized"], "plus", ("law: 'linearized' twice",)),
-        (["linearized", "stribeck"], "plus", ("sigma", "not a setting or a parameter")),
         ([], "plus", ("law",)),
     ],
 )

@@ -11,7 +11,7 @@ from burridge_knopoff.attractors import labels
 from burridge_knopoff.basins import edge_state as edges
 from burridge_knopoff.catalogue import stability
 from burridge_knopoff.library import catalogue
-from burridge_knopoff.library.keyword_settings import takes_model
+from burridge_knopoff.library.keyword_settings import divide, settings_of, takes_model
 from burridge_knopoff.library.model_forms import GivenLaw, model_of
 from burridge_knopoff.library.state_forms import begun_state, state_blocks
 from burridge_knopoff.model.chain import Chain
@@ -37,6 +37,7 @@ def _of_law(function: Callable[..., _T], *states: str) -> Callable[..., _T]:
     """
     signature = inspect.signature(function)
     names = list(signature.parameters)[1:]
+    default = signature.parameters["settings"].default if "settings" in names else None
 
     @takes_model
     @wraps(function, assigned=("__name__", "__qualname__"))
@@ -48,6 +49,9 @@ def _of_law(function: Callable[..., _T], *states: str) -> Callable[..., _T]:
         if "loading" in names:
             begin["loading"] = own.arguments.get("loading", signature.parameters["loading"].default)
         given = own.arguments
+        if default:
+            named, by_name = divide(by_name, type(default))
+            given["settings"] = settings_of(type(default), given.get("settings", default), named)
         model = model_of(
             law,
             a,

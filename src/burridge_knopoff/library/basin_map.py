@@ -79,6 +79,8 @@ def basin_map(
         parameters={"v": v, **parameters},
         settings=fields_of(SearchSettings),
     )
+    if model.blocks < 2:
+        raise ValueError("blocks: got 1, expected at least 2, since a map has the axes U_1(0) and U_N(0)")
     state = initial_numbers(model, initial)
     # The map itself shows the basin fractions.
     options = {"samples": samples, "seed": seed, "fraction_width": 0.1, **search}

@@ -13,7 +13,7 @@ from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings, takes_model
 from burridge_knopoff.library.model_forms import GivenLaw
 from burridge_knopoff.library.progress import Progress, progress_bar
-from burridge_knopoff.library.state_forms import Initial, state_blocks, state_in
+from burridge_knopoff.library.state_forms import Initial, initial_numbers, state_blocks
 from burridge_knopoff.library.sweep import parameter_grid
 from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.chain import Chain
@@ -52,7 +52,7 @@ def continue_attractors(
     a : friction parameters, shape (n,), or one number; by default that of a `Model` or a `Law`
     by_name : other parameters as in `sweep`, one of them a sequence if a is not; and settings of the search by name
         (see `SearchSettings`)
-    settings, motion, starts, start : see `find_attractors`
+    settings, motion, starts, start : see `find_attractors`; of a state of a motion, positions and velocities count
     refine : distance to which changes are located in the parameter; by default a tenth of the smallest step between the
         given values
     cores : number of simultaneous processes, by default the number of cores; results do not depend on it
@@ -87,10 +87,13 @@ def continue_attractors(
     shape = {"chain": chain, "blocks": blocks, "contact": contact}
     shape["state_blocks"] = state_blocks(given[0], "starts[0]") if given else 3
     parameters = {name: value for name, value in (("a", a), *parameters.items()) if value is not None}
-    base, axes = parameter_grid(law, parameters, shape, SearchSettings)
+    # Imported here so that xarray is loaded only for a Dataset.
+    from burridge_knopoff.summaries.attractors_along import reserved_names, summarize
+
+    base, axes = parameter_grid(law, parameters, shape, SearchSettings, reserved_names())
     if len(axes) != 1:
         raise ValueError(f"a: got {len(axes)} parameters with several values, expected one, a or another")
-    states = [state_in(base, state, f"starts[{number}]") for number, state in enumerate(given)]
+    states = [initial_numbers(base, state, f"starts[{number}]") for number, state in enumerate(given)]
     ((parameter, values),) = axes.items()
     values.sort()
     steps = np.diff(values)
@@ -99,9 +102,6 @@ def continue_attractors(
     else:
         refinement = RefinementSettings(fields_of(RefinementSettings)["resolution"].range.form(refine, "refine"))
     models = [base.at(**{parameter: value}) for value in values]
-    # Imported here so that xarray is loaded only for a Dataset.
-    from burridge_knopoff.summaries.attractors_along import summarize
-
     with progress_bar(progress, 1.0, "continue_attractors") as advance:
         done = 0.0
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from burridge_knopoff.laws import Law
+from burridge_knopoff.library.keyword_settings import divide, settings_of
 from burridge_knopoff.library.model_forms import GivenLaw, model_of
 from burridge_knopoff.library.state_forms import Initial, begun_state, state_blocks
-from burridge_knopoff.messages import format_value
+from burridge_knopoff.messages import format_value, refusal
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.limit_cycle import limit_cycle
@@ -21,6 +22,9 @@ from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 from burridge_knopoff.values import is_sequence
 
 UNBOUNDED = (-math.inf, math.inf)
+
+# Largest difference from the period of the first orbit, as a fraction of the range on the branch, where it is closed.
+CLOSED = 1e-3
 
 #: Times for a motion to settle on a periodic orbit, in the chain's own unit: the first that suffices is taken.
 SETTLING = (1000.0, 10_000.0, 100_000.0)
@@ -50,7 +54,8 @@ def follow(
         on which the motion from `initial` settles
     a : of a law, as for `simulate`; left out after an orbit or a `Model`
     interval : (low, high) of the parameter; by default unbounded
-    settings : lengths of steps; upward : whether the parameter increases at first
+    settings : lengths of steps, also by name (see `ContinuationSettings`); upward : whether the parameter increases at
+        first
     parameter : a, v, a parameter of the law such as sigma, one of the chain such as coupling, or that of one block or
         spring such as `mass[3]` (`Model.at`)
     is_complete : called with all orbits so far after each orbit that does not graze; ends the branch if true
@@ -59,9 +64,9 @@ def follow(
     chain, blocks, v, contact, parameters : of a law, as for `simulate`
 
     A grazing orbit is in the list with `is_grazing` set; the next orbit, if there is one, is on the other side. The
-    branch also ends where it joins a branch of simpler orbits, where steps become too short, and at the
-    `settings.max_orbits`-th orbit, or at the next one if that one grazes. If the parameter is then still within the
-    interval, the rest of the branch has not been followed.
+    branch also ends where it has returned to its first orbit, where it joins a branch of simpler orbits, where steps
+    become too short, and at the `settings.max_orbits`-th orbit, or at the next one if that one grazes. If the parameter
+    is then still within the interval, the rest of an open branch has not been followed.
 
     Raises OrbitError if the motion settles on no periodic orbit, or if the continuation cannot start, for example if
     the orbit is outside the interval or if its return has no derivative (see `multipliers`). Raises ValueError for an
@@ -91,6 +96,8 @@ def follow(
         elif interval is not UNBOUNDED:
             raise ValueError("interval: got two, expected one")
         a, interval = None, a
+    named, parameters = divide(parameters, ContinuationSettings)
+    settings = settings_of(ContinuationSettings, settings, named)
     if isinstance(orbit, Model | Law | str | Mapping):
         of_model = {"chain": chain, "blocks": blocks, "contact": contact, "parameters": {"v": v, **parameters}}
         orbit = _settled_orbit(orbit, a, initial, start, settling, of_model)
@@ -99,7 +106,30 @@ def follow(
         for name, value in {**given, **parameters}.items():
             if value is not None:
                 raise ValueError(f"{name}: got {format_value(value)} together with an orbit, expected none")
-    return following.follow(orbit, interval, settings, parameter=parameter, upward=upward, is_complete=is_complete)
+    if not callable(is_complete):
+        raise refusal("is_complete", is_complete, "a function")
+    return following.follow(
+        orbit,
+        interval,
+        settings,
+        parameter=parameter,
+        upward=upward,
+        is_complete=lambda points: is_complete(points) or _has_closed(points),
+    )
+
+
+def _has_closed(branch: Sequence[BranchOrbit]) -> bool:
+    """Return whether the last step of a branch has passed its first orbit, in the direction in which it began."""
+    if len(branch) < 3:
+        return False
+    first, before, last = branch[0], branch[-2], branch[-1]
+    low, high = before.value - first.value, last.value - first.value
+    upward = {point.tangent[-1] > 0.0 for point in (first, before, last)}
+    if low * high >= 0.0 or len(upward) > 1 or last.orbit.stop_counts != first.orbit.stop_counts:
+        return False
+    periods = [point.orbit.period for point in branch]
+    between = periods[-2] + low / (low - high) * (periods[-1] - periods[-2])
+    return abs(between - periods[0]) <= CLOSED * (max(periods) - min(periods))
 
 
 def _settled_orbit(

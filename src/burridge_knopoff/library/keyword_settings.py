@@ -35,8 +35,9 @@ def takes_model(function: _F) -> _F:
                 raise ValueError(
                     f"{name}: got a parameter of the law with the name of a setting, expected another name"
                 )
-        if len(arguments) > 1 and not _can_be_a(arguments[1], isinstance(arguments[0], Model | Law)):
-            arguments = (arguments[0], None, *arguments[1:])
+        if len(arguments) > 1:
+            has_a = "a" not in by_name and _can_be_a(arguments[1], isinstance(arguments[0], Model | Law))
+            arguments = arguments if has_a else (arguments[0], by_name.pop("a", None), *arguments[1:])
         return function(*arguments, **by_name)
 
     return call  # type: ignore[return-value]

@@ -6,9 +6,10 @@ from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import Any
 
-from burridge_knopoff.laws import LAWS, Law, law_of
+from burridge_knopoff.laws import LAWS, Law, law_of, unknown_law
 from burridge_knopoff.messages import format_value, full_key, suggestion
 from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.parameters import (
     CHAIN_PARAMETERS,
@@ -16,6 +17,7 @@ from burridge_knopoff.model.parameters import (
     parameter_key,
     parse_indexed_name,
 )
+from burridge_knopoff.values import is_sequence
 
 #: A law: a `Law`, the name of a built-in law, or {"formula": …} or {"law": …} with its numbers, as in a config.
 GivenLaw = Law | str | Mapping[str, Any]
@@ -44,6 +46,9 @@ def model_of(
     has its own.
     """
     values = {name: value for name, value in parameters.items() if value is not None}
+    for name, value in values.items():
+        if name in fields_of(Chain) and (name not in CHAIN_PARAMETERS or is_sequence(value)):
+            raise ValueError(f"{name}: got {format_value(value)}, expected it in a chain: chain=Chain(…, {name}=…)")
     if isinstance(law, Model):
         for name, value in (("chain", chain), ("blocks", blocks), ("contact", contact)):
             if value is not None:
@@ -73,6 +78,8 @@ def _law_at(law: GivenLaw, a: float | None, numbers: Mapping[str, Any], settings
             if name not in law.parameters:
                 raise _unknown_name(name, ("a", *law.parameters, "v", *CHAIN_PARAMETERS), settings)
         return law.at(a, **numbers)
+    if not isinstance(law, str | Mapping):
+        raise unknown_law("law", law, '{{"formula": "{}"}}')
     if a is None:
         raise ValueError("a: got None without a Model or a Law, expected a number of at least 0")
     if isinstance(law, Mapping):

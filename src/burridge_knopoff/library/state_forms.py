@@ -66,7 +66,7 @@ def is_list_of_states(initial: Any) -> bool:
 
 
 def named_states(initial: Any) -> dict[str, InitialState | ChainState | Trajectory]:
-    """Return a state or a list of states by name: numbers alone are called `own`, a state of a motion `continued`.
+    """Return a state or a list of states by name: numbers alone are `own`, motions `continued`, `continued_2` …
 
     Raises ValueError, one line, for what is no state, for numbers without a name in a list, and for equal names.
     """
@@ -79,7 +79,8 @@ def named_states(initial: Any) -> dict[str, InitialState | ChainState | Trajecto
             named = '{"name": …, "position": …, "velocity": …}'
             raise ValueError(f"{key}: got {format_value(item)}, expected a state with a name, such as {named}")
         state = item if isinstance(item, ChainState | Trajectory) else given_state(item, key)
-        name = state.name if isinstance(state, InitialState) else CONTINUED
+        motions = sum(not isinstance(other, InitialState) for other in states.values())
+        name = state.name if isinstance(state, InitialState) else f"{CONTINUED}{f'_{motions + 1}' * (motions > 0)}"
         if name in states:
             raise ValueError(f"{key}: got the name {name!r} twice, expected another one: InitialState(name, …)")
         states[name] = state

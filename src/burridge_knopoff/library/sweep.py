@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain as chained
 from itertools import product
@@ -55,6 +55,8 @@ _MOTION = {
     ),
     "period": Variable((), "f8", *PERIOD),
 }
+# Variables and dimensions of the result, which no parameter of a law can be.
+_RESERVED = {*_COMMON, *_COMMON_DIMENSIONS, *_MOTION, "law", "initial"} - {"a", "v"}
 _COORDINATES = {
     "law": Variable((), "O", "friction law"),
     "initial": Variable((), "O", "initial state"),
@@ -131,11 +133,14 @@ def sweep(
     parameters = {name: value for name, value in (("a", a), *parameters.items()) if value is not None}
     sizes = [state_blocks(state) for state in states.values()]
     shape = {"chain": chain, "blocks": blocks, "contact": contact, "state_blocks": sizes[0]}
-    grids = [parameter_grid(item, parameters, shape, Settings) for item in laws]
+    grids = []
+    for number, item in enumerate(laws):
+        place = {"law": item if isinstance(item, str) else f"number {number + 1}"} if len(laws) > 1 else {}
+        grids.append(_call_at(place, parameter_grid, item, parameters, shape, Settings, _RESERVED))
     axes: dict[str, list[Any]] = {}
     if is_sequence(law):
         names = [base.law.name for base, _ in grids]
-        axes["law"] = _different(names, "law", ": FormulaLaw(a, formula, name=…) has a name")
+        axes["law"] = _different(names, "law", ": law_of(name, a, …) gives a law a name")
     if is_list_of_states(initial):
         axes["initial"] = [*states]
     axes |= grids[0][1]
@@ -168,11 +173,12 @@ def _different(values: list[_T], name: str, hint: str = "") -> list[_T]:
 
 
 def parameter_grid(
-    law: Any, parameters: Mapping[str, Any], shape: Mapping[str, Any], settings: type
+    law: Any, parameters: Mapping[str, Any], shape: Mapping[str, Any], settings: type, reserved: Collection[str]
 ) -> tuple[Model, dict[str, list[float]]]:
     """Return the model with all single-valued parameters, and the values of those given as sequences.
 
     shape : further arguments of `model_of`; settings : class of the settings of the call
+    reserved : names of the result that no parameter with several values can have
 
     Raises ValueError, one line, for a wrong argument, and for a value that occurs twice.
     """
@@ -180,6 +186,8 @@ def parameter_grid(
         name: values for name, value in parameters.items() if (values := elements(value)) is not None
     }
     for name, values in axes.items():
+        if name in reserved:
+            raise ValueError(f"{name}: got the name of a variable of the result, expected another name of a parameter")
         if any(map(is_sequence, values)):
             raise refusal(full_key("", name), parameters[name], "one number or a sequence of numbers")
         if not values:
@@ -250,8 +258,10 @@ def _dataset(
         if name in _COORDINATES or name not in runs[0][0]:
             continue
         if item.coordinate:
-            coordinates.add(name)
-            data[name] = item.dimensions, np.asarray(runs[0][0][name], item.dtype), item.all_attributes()
+            # Batches of runs that begin at different times are only numbered.
+            if all(np.array_equal(values[name], runs[0][0][name]) for values, _ in runs):
+                coordinates.add(name)
+                data[name] = item.dimensions, np.asarray(runs[0][0][name], item.dtype), item.all_attributes()
         else:
             array = np.array([values[name] for values, _ in runs], item.dtype)
             dimensions = *plain.values(), *item.dimensions
@@ -261,6 +271,7 @@ def _dataset(
         data[plain[name]] = plain[name], values, item.all_attributes()
     first, *others = (attributes for _, attributes in runs)
     common = {key: value for key, value in first.items() if all(other.get(key) == value for other in others)}
+    common["summary"] = f"Runs over {', '.join(axes)}." if axes else first["summary"]
     for name, (item, value) in run_coordinates(first).items():
         if name not in data and not common.keys().isdisjoint((f"law_{name}", f"chain_{name}")):
             coordinates.add(name)
@@ -280,7 +291,7 @@ def _remarks(states: Mapping[str, Any], axes: Iterable[str]) -> list[str]:
     return remarks
 
 
-def _call_at(point: Mapping[str, float], function: Callable[..., _T], *arguments: Any, **by_name: Any) -> _T:
+def _call_at(point: Mapping[str, Any], function: Callable[..., _T], *arguments: Any, **by_name: Any) -> _T:
     """Call a function; an error names the point of the grid."""
     try:
         return function(*arguments, **by_name)

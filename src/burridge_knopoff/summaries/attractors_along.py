@@ -68,13 +68,20 @@ def summarize(
     return summary(title, {**variables, **NAMES, **changes}, values, coordinates, attributes, module=__name__)
 
 
+def reserved_names() -> set[str]:
+    """Return the names of variables and dimensions, which no parameter of a law can have as a coordinate."""
+    variables = {**branch_variables("a"), **NAMES}
+    dimensions = {name for item in variables.values() for name in item.dimensions}
+    return {*variables, *dimensions, *BIFURCATIONS, "bifurcation", "block", "law"} - {"a", "v"}
+
+
 def _numbers(model: Model, parameter: str) -> dict[str, float]:
     """Return the values of the other parameters that are one number."""
     numbers = {}
-    for name in model.parameter_names:
+    for name in {*model.parameter_names} - reserved_names():
         with suppress(ValueError):
             numbers[name] = model.parameter(name)
-    return {name: number for name, number in numbers.items() if name != parameter}
+    return {name: numbers[name] for name in model.parameter_names if name in numbers and name != parameter}
 
 
 def _at_all_values(continuation: Continuation, least_lifetime: float, refine: RefinementSettings) -> xarray.Dataset:
