@@ -87,7 +87,7 @@ class StudyResults(Mapping[str, xarray.DataTree]):
         return (name in self._points or name in self._summaries) and self._has(name)
 
     def __getitem__(self, path: str) -> xarray.DataTree:
-        path = self._full_name(path.strip("/"))
+        path = self._full_name(f"{path}".strip("/"))
         with NETCDF_LOCK:
             if path in self._points or path in self._summaries:
                 if self._has(path):

@@ -25,7 +25,9 @@ class Trajectory:
     two runs together have the events and crossings of one long run, bit for bit. `initially_slipping` is true for the
     blocks that slip at the beginning. A block has this slip, if it is true, and one slip from each of its starts.
 
-    Positions are U − vτ (relative to the driver) and velocities are U', as in the paper's figures.
+    Positions are U − vτ (relative to the driver) and velocities are U', as in the paper's figures. `initial` is the
+    state as it was given: `minus` and `plus` have the numbers of the paper, for v = 0.1, which
+    `Model.initial_coordinates` takes to another v.
 
     Times are in units of 1/ω. Shapes: `initially_slipping` (blocks,); `settling_time` (levels,); `time`, `distance`
     (samples,); `event_time`, `event_block`, `event_kind` (events,), `event_position`, `event_velocity` (events,
