@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -248,6 +249,9 @@ def test_an_edge_state_over_the_attractors(attractors):
     before = legend(figure)
     assert plot(edge, figure.axes[0]) is figure
     assert np.array_equal(lines(figure.axes[0])[-1], edge.returns[:, [0, 2]].T)
+    assert figure.axes[0].get_title(loc="left") == "linearized law, $a=0.12$"
+    other = plot(replace(edge, model=MODEL.at(v=0.2)))
+    assert other.axes[0].get_title(loc="left") == "linearized law, $a=0.12$, $v=0.2$"
     assert legend(figure) == [*before, f"edge state: {edge.kind.words}, $\\langle J\\rangle=0.000$"]
 
 
