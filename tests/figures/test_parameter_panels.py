@@ -1,5 +1,7 @@
 """Figures over several parameters: curves over one, maps over two, panels for the values of a third."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -88,8 +90,21 @@ def test_kinds_have_their_colours():
 def test_a_third_parameter_has_a_panel_for_each_of_a_few_values():
     titles = [drawn.axes.get_title(loc="left") for drawn in maps(grid_distance.draw(summary(a=A, sigma=SIGMA, v=V)))]
     assert len(titles) == 2 * MOST
-    assert titles[0].endswith("drop law, minus, $v = 1$")
-    assert titles[-1].endswith("drop law, plus, $v = 2$")
+    assert titles[0].endswith("drop law, minus, $v=1$")
+    assert titles[-1].endswith("drop law, plus, $v=2$")
+
+
+@pytest.mark.usefixtures("no_collection")
+def test_titles_of_panels_side_by_side_do_not_overlap():
+    dataset = summary(laws=("linearized",), states=("plus",), mass_3=[1.0, 1.2, 1.25], a=A, v=A)
+    for parameters in (("mass_3", "a", "v"), ("a", "v", "mass_3")):
+        figure = grid_distance.draw(dataset.transpose("law", "initial", *parameters, ...))
+        figure.draw_without_rendering()
+        titles = [panel._left_title for panel in figure.axes if panel.get_title(loc="left")]
+        boxes = [title.get_window_extent() for title in titles]
+        assert all(left.x1 < right.x0 for left, right in pairwise(boxes))
+    assert titles[1].get_text().replace("\n", " ") == "(b) linearized law, plus, mass[3] 1.2"
+    assert grid_distance.draw(dataset).axes[0].get_xlabel() == r"$\mathrm{mass[3]}$"
 
 
 def test_a_single_parameter_that_varies_has_a_curve(tmp_path):

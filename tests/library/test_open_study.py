@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import xarray
 
-from burridge_knopoff import decode_flags, open_study
+from burridge_knopoff import decode_flags, open_study, plot
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.show.result import open_result
@@ -101,6 +101,17 @@ def test_points_are_one_dataset(results):
     assert some.distance.identical(points.distance)
     with refused("names", "event_time"):
         study.points("event_time")
+
+
+def test_a_file_is_drawn_as_its_dataset(results):
+    study = open_study(results)
+    for path in ("points/linearized/plus/a0.08", "summary/mean_distance"):
+        panels = [plot(result).axes for result in (study[path], study[path].to_dataset())]
+        drawn = [[line.get_data() for panel in part for line in panel.lines] for part in panels]
+        assert drawn[0]
+        assert all(map(np.array_equal, *drawn))
+    with refused("result"):
+        plot(study["points"])
 
 
 def test_a_folder_without_points_has_no_dataset_of_them(results, tmp_path):

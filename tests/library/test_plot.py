@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from burridge_knopoff import (
     Chain,
     InitialState,
     Model,
+    MotionKind,
     basin_map,
     edge_state,
     find_attractors,
@@ -126,6 +128,18 @@ def test_a_sweep_over_laws_and_states_alone():
     assert [line.ravel().tolist() for line in lines(plot(runs).axes[0])] == [[0.08, k] for k in range(4)]
 
 
+def test_a_sweep_at_one_value_has_one_tick_and_whole_error_bars():
+    runs = summary(states=("plus",), a=[0.08])
+    runs["mean_distance"], runs["mean_distance_error"] = runs.mean_distance + 1.0, runs.mean_distance_error + 2.0
+    figure = plot(runs)
+    (panel,) = figure.axes
+    assert panel.get_xticks().tolist() == [0.08]
+    assert panel.get_ylim()[0] < -5.0
+    plot(summary(states=("plus",), a=[0.02, 0.05]), panel)
+    assert panel.get_xlim()[0] < 0.02 < 0.08 < panel.get_xlim()[1]
+    assert len(panel.get_xticks()) > 2
+
+
 def test_a_legend_has_at_most_eight_entries():
     names = legend(plot(summary(states=[f"state{k}" for k in range(12)], a=[0.1, 0.2])))
     assert len(names) == 8
@@ -153,7 +167,7 @@ def test_a_sweep_over_three_parameters_has_panels():
 @pytest.mark.parametrize("axes", [None, Figure().subplots()])
 def test_a_map_of_basins_with_and_without_its_attractors(maps, axes):
     basins, _ = maps
-    for result in (maps, basins):
+    for result in (maps, basins, basins.isel(map=0), (basins.isel(map=0), maps[1])):
         (panel,) = plot(result, axes).axes
         picture = panel.images[-1].get_array()
         for branch, side, color in zip(
@@ -207,6 +221,21 @@ def test_attractors_of_a_model(attractors):
     assert len(lines(plot(found).axes[0])) == len(found)
 
 
+def test_a_single_point_has_axes_wider_than_rounding(attractors):
+    """The returns to the synchronized orbit differ by 1e-13."""
+    (synchronized, *_), _ = find_attractors("linearized", 0.08, samples=8, **QUICK)
+    assert synchronized.motion.kind == MotionKind.SYNCHRONIZED
+    assert np.ptp(synchronized.motion.returns[:, 0]) < 1e-9
+    figure = plot([synchronized])
+    (panel,) = figure.axes
+    for ends in (panel.get_xlim(), panel.get_ylim()):
+        assert np.ptp(ends) == pytest.approx(0.2 * abs(np.mean(ends)), rel=0.01)
+    plot(attractors[0], panel)
+    figure.draw_without_rendering()
+    x = np.hstack([line[0] for line in lines(panel)])
+    assert panel.get_xlim()[0] <= x.min() < x.max() <= panel.get_xlim()[1]
+
+
 def test_a_search_without_attractors():
     (panel,) = plot(([], np.full(3, -1))).axes
     assert panel.texts[0].get_text() == "no attractor was found"
@@ -220,6 +249,9 @@ def test_an_edge_state_over_the_attractors(attractors):
     before = legend(figure)
     assert plot(edge, figure.axes[0]) is figure
     assert np.array_equal(lines(figure.axes[0])[-1], edge.returns[:, [0, 2]].T)
+    assert figure.axes[0].get_title(loc="left") == "linearized law, $a=0.12$"
+    other = plot(replace(edge, model=MODEL.at(v=0.2)))
+    assert other.axes[0].get_title(loc="left") == "linearized law, $a=0.12$, $v=0.2$"
     assert legend(figure) == [*before, f"edge state: {edge.kind.words}, $\\langle J\\rangle=0.000$"]
 
 
@@ -292,6 +324,15 @@ def test_a_curve_of_bifurcations(branch):
     assert np.array_equal(lines(panel)[0], curve.values.T)
     assert (panel.get_xlabel(), panel.get_ylabel()) == ("$a$", r"$\mathrm{threshold}$")
     assert legend(figure) == [BifurcationKind.PITCHFORK.words]
+
+
+def test_a_curve_along_which_a_is_constant(branch):
+    """a_c does not depend on v under the linearized law."""
+    curve = follow_bifurcation(branch[1][0], ("a", "v"), (0.09, 0.11))
+    (panel,) = plot(curve).axes
+    assert np.ptp(curve.values[:, 0]) < 1e-9
+    assert np.ptp(panel.get_xlim()) == pytest.approx(0.2 * curve.values[0, 0], rel=1e-3)
+    assert np.ptp(panel.get_ylim()) < 2.0 * np.ptp(curve.values[:, 1])
 
 
 def test_pictures_side_by_side_have_the_look_of_their_figure(branch, attractors, maps):

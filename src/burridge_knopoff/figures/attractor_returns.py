@@ -13,8 +13,9 @@ from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.labels import UNDETERMINED
 from burridge_knopoff.basins.edge_state import EdgeState
 from burridge_knopoff.figures.branches import ranked_colors
+from burridge_knopoff.figures.model_words import model_title
 from burridge_knopoff.figures.palette import pale
-from burridge_knopoff.figures.single_panel import draw_panel
+from burridge_knopoff.figures.single_panel import draw_panel, widen_constant_axes
 from burridge_knopoff.figures.style import say
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.kind import SYNCHRONOUS
@@ -41,8 +42,7 @@ def _attractors(panel: Axes, attractors: Sequence[Attractor], labels: np.ndarray
         _returns(panel, attractor.model, motion.returns, color, words + _share(labels, k))
     if labels is not None and (labels == UNDETERMINED).any():
         panel.plot([], [], linestyle="", label=f"undetermined{_share(labels, UNDETERMINED)}")
-    model = attractors[0].model
-    return f"{model.law.name} law, $a={model.a:g}$"
+    return model_title(attractors[0].model)
 
 
 def _colors(attractors: Sequence[Attractor]) -> list[str]:
@@ -66,6 +66,7 @@ def _returns(panel: Axes, model: Model, returns: np.ndarray, color: str, label: 
     panel.plot(first, last, "o", markersize=size, rasterized=True, **look)
     panel.plot([], [], "o", markersize=4.0, label=label, **look)
     panel.set(xlabel="$x_1$ at the returns", ylabel=f"$x_{{{model.blocks}}}$ at the returns")
+    widen_constant_axes(panel)
 
 
 def draw_edge(edge: EdgeState, axes: Axes | None = None) -> Figure:
@@ -76,4 +77,4 @@ def draw_edge(edge: EdgeState, axes: Axes | None = None) -> Figure:
 def _edge(panel: Axes, edge: EdgeState) -> str:
     label = f"edge state: {edge.kind.words}, $\\langle J\\rangle={edge.mean_distance:.3f}$"
     _returns(panel, edge.model, edge.returns, "black", label)
-    return f"{edge.model.law.name} law, $a={edge.model.a:g}$"
+    return model_title(edge.model)

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.figures.branches import branch_colors, map_colors, map_parts, ranked_colors
+from burridge_knopoff.figures.model_words import fixed_numbers
 from burridge_knopoff.figures.single_panel import draw_panel
 from burridge_knopoff.figures.style import COLUMN, PAGE, StyledFigure, label_panels, legend_below, styled
 
@@ -111,7 +112,7 @@ def _extent(basins: xarray.Dataset) -> tuple[float, float, float, float]:
 
 
 def _title(basin_map: xarray.Dataset) -> str:
-    return f"{basin_map['law'].item()} law, $a={basin_map['a'].item():g}$"
+    return ", ".join([f"{basin_map['law'].item()} law", *fixed_numbers(basin_map)])
 
 
 def _map(panel: Axes, basin_map: xarray.Dataset, colors: Mapping[int, str]) -> dict[tuple[int, int], Patch]:

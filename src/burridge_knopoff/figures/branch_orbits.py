@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.bifurcations import MARK, draw_branch, draw_marks, orbit_handles
+from burridge_knopoff.figures.model_words import model_title, symbol
 from burridge_knopoff.figures.palette import dashes
-from burridge_knopoff.figures.parameter_panels import symbol
-from burridge_knopoff.figures.single_panel import draw_panel
+from burridge_knopoff.figures.single_panel import draw_panel, widen_constant_axes
 from burridge_knopoff.figures.style import lone_marker
 from burridge_knopoff.periodic_orbits.bifurcation_curve import BifurcationCurve
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation
@@ -43,8 +43,8 @@ def _branch(panel: Axes, branch: Sequence[BranchOrbit], bifurcations: Sequence[B
     for kind in sorted({item.kind for item in bifurcations}):
         panel.plot([], [], kind.mark, linestyle="", label=kind.words, **MARK)
     panel.set(xlabel=f"${symbol(parameter)}$", ylabel="period $T$" if is_period else r"$\langle J\rangle$")
-    model = orbits[0].model
-    return f"{model.law.name} law" + ("" if parameter == "a" else f", $a={model.a:g}$")
+    widen_constant_axes(panel)
+    return model_title(orbits[0].model, [parameter])
 
 
 def _once_around(branch: Sequence[BranchOrbit]) -> int:
@@ -83,4 +83,5 @@ def _curve(panel: Axes, curve: BifurcationCurve) -> str:
     panel.plot(x, y, color="black", linewidth=1.0, label=curve.kind.words, **look)
     first, second = curve.parameters
     panel.set(xlabel=f"${symbol(first)}$", ylabel=f"${symbol(second)}$")
-    return f"{curve.orbits[0].model.law.name} law"
+    widen_constant_axes(panel)
+    return model_title(curve.orbits[0].model, curve.parameters)

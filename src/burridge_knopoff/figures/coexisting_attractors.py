@@ -13,7 +13,7 @@ from burridge_knopoff.continuation.branch_changes import Change
 from burridge_knopoff.figures.basin_fractions import UNDETERMINED_STATES, draw_fractions, interval_handle
 from burridge_knopoff.figures.branches import branch_colors
 from burridge_knopoff.figures.mean_distance import branch_handles, draw_attractors
-from burridge_knopoff.figures.parameter_panels import constant, fixed_a, symbol
+from burridge_knopoff.figures.model_words import constant, fixed_numbers, symbol
 from burridge_knopoff.figures.single_panel import MOST_ENTRIES, shortened
 from burridge_knopoff.figures.style import (
     SHADE,
@@ -60,7 +60,7 @@ def draw(attractors: xarray.Dataset) -> Figure:
         others.append(shade_entry("a branch begins or ends"))
     branches = branch_handles(colors, branch_names(attractors))
     legend_below(figure, [*shortened(branches, MOST_ENTRIES - len(others)), *others])
-    at = "" if parameter == "a" else fixed_a(attractors)
+    at = "".join(f", {words}" for words in fixed_numbers(attractors, [parameter]))
     label_panels(panels, [f"{law} law{at}{end}" for end in ("", ": basin fractions") for law in laws])
     return figure
 

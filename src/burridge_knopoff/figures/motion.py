@@ -10,6 +10,7 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from burridge_knopoff.figures.model_words import fixed_numbers
 from burridge_knopoff.figures.palette import block_color
 from burridge_knopoff.figures.style import PAGE, StyledFigure, label_panels, say_nothing, styled
 from burridge_knopoff.running.status import STATUS_WORDS
@@ -64,7 +65,7 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
         panels["velocity"].legend(ncols=blocks, loc="lower right", bbox_to_anchor=(1.0, 0.98), borderpad=0.1)
     elif 3 < blocks <= MOST_NAMED:
         figure.legend(curves, names, ncols=min(blocks, 6), loc="outside lower center")
-    run = f"{point.attrs['initial']}, $a={point['a'].item():g}$, {point.attrs['law']} law"
+    run = run_title(point)
     titles = (
         f"velocities: {run}",
         f"positions relative to the driver: {run}",
@@ -73,6 +74,12 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
     )
     label_panels(panels.values(), titles)
     return figure
+
+
+def run_title(point: xarray.Dataset) -> str:
+    """Return the initial state, a and law of a point file, and the numbers of the model that are not the paper's."""
+    run = f"{point.attrs['initial']}, $a={point['a'].item():g}$, {point.attrs['law']} law"
+    return ", ".join([run, *fixed_numbers(point, ["a"])])
 
 
 def early_end(point: xarray.Dataset) -> str:

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 
+from burridge_knopoff.figures.model_words import fixed_numbers, parameter_words, symbol
 from burridge_knopoff.figures.style import (
     ACROSS,
     COLUMN,
@@ -26,7 +27,8 @@ from burridge_knopoff.figures.style import (
 #: Most values of each further parameter that have panels.
 MOST = 6
 
-GREEK = ("alpha", "beta", "gamma", "delta", "epsilon", "eta", "theta", "kappa", "mu", "nu", "sigma", "tau", "phi")
+#: Number of letters of a title for each inch of a panel with its share of the numbers and colours beside it.
+LETTERS = 14
 
 
 def draw_panels(
@@ -63,7 +65,7 @@ def draw_panels(
             curve(panel, first, part)
         if number % across == 0:
             panel.set_ylabel(f"${symbol(varied[1])}$" if len(varied) > 1 else label)
-    label_panels(panels, [title for title, _ in parts])
+    label_panels(panels, [title for title, _ in parts], LETTERS)
     return figure, panels, drawn
 
 
@@ -105,25 +107,9 @@ def panel_parts(grid: xarray.Dataset) -> Iterator[tuple[str, xarray.Dataset]]:
     """Yield the title of each panel, with formulas between dollar signs, and its part of the Dataset."""
     further = [name for name in _parameters(grid) if name not in varied_parameters(grid)[:2]]
     chosen = [even_indices(grid.sizes[name], MOST) for name in further]
+    fixed = fixed_numbers(grid, varied_parameters(grid))
     for law, initial in product(grid["law"].values, grid["initial"].values):
         for places in product(*chosen):
             part = grid.sel(law=law, initial=initial).isel(dict(zip(further, places, strict=True)))
-            values = [f"${symbol(name)} = {part[name].item():g}$" for name in further if grid.sizes[name] > 1]
-            yield ", ".join([f"{law} law, {initial}", *values]), part
-
-
-def constant(data: xarray.Dataset, name: str) -> np.ndarray:
-    """Return the values of a coordinate; without it, of the attribute of that name, which files may have instead."""
-    return data[name].values if name in data.coords else np.array(data.attrs.get(name, ""))
-
-
-def fixed_a(data: xarray.Dataset) -> str:
-    """Return the end of a title with a, if it is the same for the whole Dataset."""
-    return f", $a={data['a'].item():g}$" if "a" in data.coords and data["a"].size == 1 else ""
-
-
-def symbol(name: str) -> str:
-    """Return the name of a parameter for mathematical text: a Latin or Greek letter slanted, a word upright."""
-    if name in GREEK:
-        return f"\\{name}"
-    return name if len(name) == 1 else r"\mathrm{" + name.replace("_", r"\_") + "}"
+            values = [parameter_words(name, part[name].item()) for name in further if grid.sizes[name] > 1]
+            yield ", ".join([f"{law} law, {initial}", *values, *fixed]), part

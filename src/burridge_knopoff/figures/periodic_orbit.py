@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.dataset.point import to_dataset
+from burridge_knopoff.figures.model_words import model_title
 from burridge_knopoff.figures.motion import draw_blocks
 from burridge_knopoff.figures.palette import block_color
 from burridge_knopoff.figures.single_panel import legend_entries
@@ -37,7 +38,7 @@ def draw(orbit: PeriodicOrbit) -> Figure:
     _phase_planes(planes, point, THIN if max(orbit.stop_counts) > FEW else 1.0)
     legend_below(figure, legend_entries([velocities]))
     part = "" if shown == orbit.period else "part of "
-    name = f"{orbit.symmetry.name.lower()}, {orbit.model.law.name} law, $a={orbit.a:.6g}$"
+    name = f"{orbit.symmetry.name.lower()}, {model_title(orbit.model)}"
     label_panels([velocities, planes], [f"{part}the period $T={orbit.period:.6g}$", name])
     return figure
 

@@ -15,6 +15,9 @@ from burridge_knopoff.figures.style import STYLE, StyledFigure, legend_below, ne
 #: Size in inches of a figure with one panel.
 SIZE = (4.6, 3.3)
 
+# Differences of values that are rounding, as a fraction of the values, and of values near 0.
+ROUNDING, TINY = 1e-6, 1e-9
+
 #: Most entries of a legend.
 MOST_ENTRIES = 8
 
@@ -40,6 +43,20 @@ def draw_panel(draw: Callable[[Axes], str], axes: Axes | None, size: tuple[float
             legend.remove()
         legend_below(figure, legend_entries(figure.axes))
     return figure
+
+
+def widen_constant_axes(panel: Axes) -> None:
+    """Extend each axis on which all values are the same up to rounding, by a tenth of them to both sides."""
+    values = panel.dataLim
+    for (low, high), extend, is_free in (
+        (values.intervalx, panel.set_xlim, panel.get_autoscalex_on()),
+        (values.intervaly, panel.set_ylim, panel.get_autoscaley_on()),
+    ):
+        size = max(abs(low), abs(high))
+        if is_free and 0.0 <= high - low <= max(ROUNDING * size, TINY):
+            half = 0.1 * size if size > TINY else 0.01
+            # A later picture over this one scales the axis anew.
+            extend(0.5 * (low + high) - half, 0.5 * (low + high) + half, auto=True)
 
 
 def legend_entries(panels: Iterable[Axes]) -> list[Artist]:

@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.distance import linear_top
+from burridge_knopoff.figures.model_words import model_title
 from burridge_knopoff.figures.motion import end_words
 from burridge_knopoff.figures.palette import block_color
 from burridge_knopoff.figures.style import PAGE, StyledFigure, say_nothing, styled
@@ -36,6 +37,5 @@ def plot_run(run: Trajectory) -> Figure:
     # A legend of more blocks would cover the curves.
     if run.model.blocks <= 8:
         figure.legend(loc="outside lower center", ncols=run.model.blocks + 1)
-    law = run.model.law
-    figure.suptitle(f"{run.initial.name}, {law.name} law, $a={law.a:g}$", fontsize="medium")
+    figure.suptitle(f"{run.initial.name}, {model_title(run.model)}", fontsize="medium")
     return figure

@@ -173,15 +173,18 @@ def scale_to_decades(panel: Axes) -> None:
         panel.set_ylim(0.7 * 10.0**first, 1.4 * 10.0 ** max(last, first + 1))
 
 
-def label_panels(axes: Iterable[Axes], titles: Iterable[str]) -> None:
-    """Write (a), (b), … and a title above each panel, in as many lines as needed; no letter for a single panel."""
+def label_panels(axes: Iterable[Axes], titles: Iterable[str], letters: int = LETTERS) -> None:
+    """Write (a), (b), … and a title above each panel, in as many lines as needed; no letter for a single panel.
+
+    letters : number of letters of a title for each inch of a panel
+    """
     panels = list(axes)
     for number, (panel, title) in enumerate(zip(panels, titles, strict=True)):
         letter = "(" + chr(ord("a") + number % 26) * (number // 26 + 1) + ") " if len(panels) > 1 else ""
         place, figure = panel.get_subplotspec(), panel.get_figure(root=True)
         share = len(place.colspan) / place.get_gridspec().ncols if place is not None else 1.0
         width = share * figure.get_figwidth() if figure is not None else PAGE
-        panel.set_title(_wrapped(f"{letter}{title}", round(LETTERS * width)), loc="left")
+        panel.set_title(_wrapped(f"{letter}{title}", round(letters * width)), loc="left")
 
 
 def legend_entries(panels: Iterable[Axes]) -> tuple[list[Artist], list[str]]:

@@ -9,18 +9,13 @@ import numpy as np
 import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import AutoLocator
 
 from burridge_knopoff.figures import grid_distance
 from burridge_knopoff.figures.mean_distance import draw_runs
+from burridge_knopoff.figures.model_words import constant, fixed_numbers, symbol
 from burridge_knopoff.figures.palette import dashes, law_color, law_symbol, state_symbol
-from burridge_knopoff.figures.parameter_panels import (
-    constant,
-    draw_map,
-    fixed_a,
-    panel_parts,
-    symbol,
-    varied_parameters,
-)
+from burridge_knopoff.figures.parameter_panels import draw_map, panel_parts, varied_parameters
 from burridge_knopoff.figures.single_panel import draw_panel
 from burridge_knopoff.figures.style import begin_at_zero, say, show_all
 
@@ -72,13 +67,26 @@ def _curves(panel: Axes, grid: xarray.Dataset) -> str:
     for k, state in enumerate(states if many["initial"] else ()):
         panel.plot([], [], **_look(0, k, grid) | ({"linestyle": ""} if many["law"] else {}), label=f"from {state}")
     panel.set(xlabel=f"${symbol(parameter)}$", ylabel=LABEL)
-    show_all(panel, grid[parameter].values)
+    _scale_to(panel, grid[parameter].values)
     if np.isfinite(grid["mean_distance"].values).any():
         begin_at_zero(panel)
+        panel.set_ylim(bottom=min(panel.get_ylim()[0], 1.1 * panel.dataLim.y0))
         panel.errorbar([], [], [], fmt="none", ecolor="0.3", elinewidth=0.5, label="three standard errors")
     else:
         say(panel, "no run completed")
     return _title(grid, parameter)
+
+
+def _scale_to(panel: Axes, values: np.ndarray) -> None:
+    """Scale the horizontal axis to values of the parameter, and those of earlier pictures in the same axes."""
+    ends = panel.dataLim.intervalx
+    places = np.unique([*values, *ends[np.isfinite(ends)]])
+    show_all(panel, places)
+    if len(places) == 1:
+        # Other numbers would tell of a range.
+        panel.set_xticks(places)
+    elif len(panel.get_xticks()) == 1:
+        panel.xaxis.set_major_locator(AutoLocator())
 
 
 def _look(law: int, state: int, grid: xarray.Dataset) -> dict[str, Any]:
@@ -104,7 +112,7 @@ def _map(panel: Axes, part: xarray.Dataset, title: str) -> str:
 
 
 def _title(grid: xarray.Dataset, parameter: str) -> str:
-    """Return what is the same for all runs: the law, the initial state and a."""
+    """Return what is the same for all runs: the law, the initial state, a, and the numbers that are not the paper's."""
     words = [f"{grid['law'].item()} law"] if grid.sizes["law"] == 1 else []
     words += [f"from {grid['initial'].item()}"] if grid.sizes["initial"] == 1 else []
-    return ", ".join(words) + ("" if parameter == "a" else fixed_a(grid))
+    return ", ".join([*words, *fixed_numbers(grid, [parameter])])

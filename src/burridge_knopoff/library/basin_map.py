@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.basins.settings import BasinSettings
+from burridge_knopoff.dataset.point import model_attributes
 from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings, takes_model
 from burridge_knopoff.library.model_forms import GivenLaw, model_of
 from burridge_knopoff.library.state_forms import Initial, initial_numbers, state_blocks
@@ -99,5 +100,5 @@ def basin_map(
     pairs = basin_summary.pairs(candidates, plane, settings.label_limit, settings.seed, start)
     basins = basin_summary.merge([(model, [tile], pairs)], attractors, plane, settings.label_limit, start)
     for dataset in (attractors, basins):
-        dataset.attrs["history"] = "burridge_knopoff.basin_map"
+        dataset.attrs |= {"history": "burridge_knopoff.basin_map", **model_attributes(model)}
     return basins, attractors

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 #: What can be drawn, in words.
 DRAWN = (
-    "a Run, Catalogue, PeriodicOrbit, BifurcationCurve or EdgeState, a Dataset of runs, maps or attractors, "
+    "a Run, Catalogue, PeriodicOrbit, BifurcationCurve or EdgeState, a Dataset or file of runs, maps or attractors, "
     "or what basin_map, find_attractors or follow returns"
 )
 
@@ -39,8 +39,8 @@ def plot(result: Any, axes: Axes | None = None) -> Figure:
         a `Run`: J(τ) and the velocities U_i'(τ); its `to_dataset()`, or a point of a study, also the section W = 0
         a `Catalogue`: slips in space and time, recurrence, rates, extents and intervals
         the Dataset of `sweep`: ⟨J⟩ with three standard errors over one parameter, a map over two, panels for more
-        what `basin_map` returns, or its first Dataset: the basins, with the paper's initial states that lie in the
-            plane
+        what `basin_map` returns, or its first Dataset alone: the basins, with the paper's initial states that lie in
+            the plane
         the Dataset of `continue_attractors`, the second of `basin_map`, or `attractors.nc` of a study: ⟨J⟩ and the
             basin fraction of each branch, and the ranges in which a branch begins or ends
         what `find_attractors` returns, or the list alone, and an `EdgeState`: positions x_1 and x_N at the returns, the
@@ -49,11 +49,12 @@ def plot(result: Any, axes: Axes | None = None) -> Figure:
         the list of `BranchOrbit`s that `follow` returns, or (this list, its `Bifurcation`s): ⟨J⟩ along the parameter,
             solid where the orbit is stable; the period T if all orbits are synchronized
         a `BifurcationCurve`: the curve over its two parameters
+        a file of a study in place of a Dataset: what `open_study` gives for its path
     axes : matplotlib axes to draw into, for a picture of one panel, such as those of an earlier picture
 
-    All quantities are dimensionless, see `Model`. The figure has vector lines; `figure.savefig` writes it. matplotlib
-    is imported by the first picture. Raises ValueError, one line, for anything else, and for axes where the picture has
-    several panels.
+    Titles name a and the parameters that are not the paper's. All quantities are dimensionless, see `Model`. The figure
+    has vector lines; `figure.savefig` writes it. matplotlib is imported by the first picture. Raises ValueError, one
+    line, for anything else, and for axes where the picture has several panels.
 
     >>> from burridge_knopoff import plot, sweep
     >>> runs = sweep("linearized", [0.05, 0.1, 0.15], "plus", transient=1000, window=500)
@@ -75,7 +76,7 @@ def _drawing(result: Any) -> Callable[[Axes | None], Figure]:
 
     from burridge_knopoff.figures import attractor_returns, branch_orbits, periodic_orbit
 
-    first, second = result if isinstance(result, tuple) and len(result) == 2 else (result, None)
+    first, second = map(_dataset, result if isinstance(result, tuple) and len(result) == 2 else (result, None))
     if isinstance(first, xarray.Dataset) and (second is None or isinstance(second, xarray.Dataset)):
         if drawing := _dataset_drawing(first, second):
             return drawing
@@ -95,14 +96,22 @@ def _drawing(result: Any) -> Callable[[Axes | None], Figure]:
     raise refusal("result", result, DRAWN)
 
 
+def _dataset(result: Any) -> Any:
+    """Return the Dataset of a tree without children, as `open_study` returns a file; any other value as it is."""
+    import xarray
+
+    return result.to_dataset() if isinstance(result, xarray.DataTree) and not result.children else result
+
+
 def _dataset_drawing(data: xarray.Dataset, attractors: xarray.Dataset | None) -> Callable[[Axes | None], Figure] | None:
     """Return the function that draws a Dataset, a map with its attractors if they are there; None for another one."""
     from burridge_knopoff.figures import basins, coexisting_attractors, motion, sweep
 
-    if {"map", "first_position"} <= {*data.dims}:
-        if data.sizes["map"] > 1:
-            return _without_axes(partial(basins.draw, data, attractors, {}))
-        return partial(basins.draw_single, data, attractors, _paper_states(data))
+    if {"first_position", "last_position"} <= {*data.dims} and "branch" in data:
+        maps = data if "map" in data.dims else data.expand_dims("map")
+        if maps.sizes["map"] > 1:
+            return _without_axes(partial(basins.draw, maps, attractors, {}))
+        return partial(basins.draw_single, maps, attractors, _paper_states(maps))
     if attractors is not None:
         return None
     if {"branch", "basin_count"} <= {*data}:

@@ -23,6 +23,7 @@ CHAIN_PARAMETERS = {**SPRING_PARAMETERS, **BLOCK_PARAMETERS}
 SCALES = {"v", "coupling", "pulling", "threshold", "mass"}
 
 _INDEXED_NAME = re.compile(rf"({'|'.join(CHAIN_PARAMETERS)})\[(0|[1-9][0-9]*)\]")
+_PLAIN_NAME = re.compile(rf"^({'|'.join(CHAIN_PARAMETERS)})_([0-9]+)$")
 
 
 def format_parameter_names(names: Iterable[str]) -> str:
@@ -59,6 +60,11 @@ def plain_name(name: str) -> str:
     """
     single = parse_indexed_name(name)
     return f"{single[0]}_{single[1]}" if single else name
+
+
+def full_name(name: str) -> str:
+    """Return the name of a parameter from its `plain_name`: `mass[3]` for `mass_3`; any other name as it is."""
+    return _PLAIN_NAME.sub(r"\1[\2]", name)
 
 
 def chain_parameter(chain: Chain, name: str) -> Any:

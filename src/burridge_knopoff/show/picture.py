@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.description import Description, figure_descriptions
 from burridge_knopoff.figures.distance import FLOOR, linear_top
-from burridge_knopoff.figures.motion import MOST_NAMED, draw_blocks, draw_section
+from burridge_knopoff.figures.motion import MOST_NAMED, draw_blocks, draw_section, run_title
 from burridge_knopoff.figures.slip_events import draw_run
 from burridge_knopoff.figures.style import PAGE, label_panels, new_figure, styled, write_figure
 from burridge_knopoff.messages import cut, format_value
@@ -145,7 +145,7 @@ def draw_point(point: xarray.Dataset) -> Figure:
     draw_blocks(panels[3], point, "velocity")
     if panels[3].lines and point.sizes["block"] <= MOST_NAMED:
         figure.legend(*panels[3].get_legend_handles_labels(), ncols=6, loc="outside lower center")
-    run = f"{point.attrs['initial']}, $a={point['a'].item():g}$, {point.attrs['law']} law"
+    run = run_title(point)
     titles = (f"{run}: distance of the end blocks", "logarithmic", "section points", "velocities at the end")
     label_panels(panels, titles)
     return figure
