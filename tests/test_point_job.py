@@ -10,8 +10,7 @@ import time
 import pytest
 
 from burridge_knopoff.dataset.point import write_point
-from burridge_knopoff.kernel._core import StopFlag
-from burridge_knopoff.point_job import run_point_job
+from burridge_knopoff.point_job import Interrupt, run_point_job
 from burridge_knopoff.provenance.opening import open_whole
 from burridge_knopoff.report.stages import job_costs
 from burridge_knopoff.running.simulation import run
@@ -33,7 +32,7 @@ def make(study, folder, point, stop=None):
     results = folder / "results/short"
     path, log = results / study.run_file(**point), results / f"logs/simulate/{point['law']}/{point['a']}.log"
     log.parent.mkdir(parents=True, exist_ok=True)
-    run_point_job(study, point, str(path), str(log), str(results), stop or StopFlag())
+    run_point_job(study, point, str(path), str(log), str(results), stop or Interrupt())
     return path, log
 
 
@@ -103,7 +102,7 @@ def test_a_run_that_ends_early_is_a_result(tmp_path):
 
 def test_a_flag_ends_a_long_run_in_its_thread(tmp_path):
     study = load_study({**CONFIG, "window": 1e8, "sampling": 1e4, "without": ["solvers"]}, "short.yaml")
-    stop, errors = StopFlag(), []
+    stop, errors = Interrupt(), []
 
     def job():
         try:

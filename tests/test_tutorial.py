@@ -17,6 +17,7 @@ SLIDER = "A slider over a"
 
 def test_the_tutorial_prints_what_it_says(repository, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "docs/figures").mkdir(parents=True)
     page = (repository / "docs" / "tutorial.md").read_text()
     headings = {block.heading for block in blocks(page)} - {FROM_FILES, SLIDER}
     results = outputs(page, "docs/tutorial.md", headings)

@@ -8,20 +8,50 @@ import time
 import traceback
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
 
-from burridge_knopoff.dataset.simulated_point import simulate_point
-from burridge_knopoff.kernel._core import StopFlag
 from burridge_knopoff.messages import escape_unprintable
 from burridge_knopoff.outputs import benchmark_of
 from burridge_knopoff.provenance.files import remove_links, reserved_room
 from burridge_knopoff.study.job_log import INTERRUPTED
 from burridge_knopoff.study.study import Study
 
+if TYPE_CHECKING:
+    from burridge_knopoff.kernel._core import StopFlag
 
-def stop_on_interrupt() -> StopFlag:
-    """Return a flag that Ctrl-C sets, for the runs of other threads: Python interrupts the main thread only."""
-    stop = StopFlag()
+
+class Interrupt:
+    """Ctrl-C, for the runs of other threads: Python interrupts the main thread only.
+
+    The kernel is loaded by the first run that heeds it: a Snakefile is read without one.
+    """
+
+    def __init__(self) -> None:
+        self._is_set = False
+        self._stop: StopFlag | None = None
+        self._lock = threading.Lock()
+
+    def set(self) -> None:
+        """End the runs of all threads that heed this."""
+        self._is_set = True
+        # A flag that another thread makes meanwhile is set there.
+        if self._stop:
+            self._stop.set()
+
+    def heed(self) -> None:
+        """Let this end the runs of the calling thread."""
+        from burridge_knopoff.kernel._core import StopFlag
+
+        with self._lock:
+            self._stop = self._stop or StopFlag()
+        if self._is_set:
+            self._stop.set()
+        self._stop.heed()
+
+
+def stop_on_interrupt() -> Interrupt:
+    """Return what Ctrl-C sets."""
+    stop = Interrupt()
     previous = signal.getsignal(signal.SIGINT)
 
     def interrupt(number: int, frame: object) -> None:
@@ -36,14 +66,16 @@ def stop_on_interrupt() -> StopFlag:
 
 
 def run_point_job(
-    study: Study, wildcards: Mapping[str, str], path: str, log: str, results: str, stop: StopFlag
+    study: Study, wildcards: Mapping[str, str], path: str, log: str, results: str, stop: Interrupt
 ) -> None:
     """Make the point of some wildcards. Its log says what `bk simulate` would print.
 
     results : folder of the study, which has a file with the wall time and the CPU time of the job as well
-    stop : a flag that ends the run
+    stop : ends the run
     Raises RuntimeError, one line, if the point fails; its log then has the reason.
     """
+    from burridge_knopoff.dataset.simulated_point import simulate_point
+
     stop.heed()
     benchmark = Path(results, benchmark_of(Path(log).relative_to(results).as_posix()))
     remove_links(log, benchmark)

@@ -147,7 +147,7 @@ def test_jobs_wait_only_for_their_inputs(whole):
 CHANGES = [
     ({"catalogue": {"low": -1.0}}, {"catalogue"}),
     ({"catalogue": {"window": 100.0}}, {"catalogue_of_run"}),
-    ({"chains": {"blocks": [2, 3], "time_limit": 500}}, {"watch_chain"}),
+    ({"chains": {**WHOLE["chains"], "time_limit": 500}}, {"watch_chain"}),
     ({"edges": {"samples": 50}}, {"edges_of_law"}),
 ]
 
