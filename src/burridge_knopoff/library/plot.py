@@ -59,8 +59,8 @@ def plot(result: Any, axes: Axes | None = None) -> Figure:
     >>> from burridge_knopoff import plot, sweep
     >>> runs = sweep("linearized", [0.05, 0.1, 0.15], "plus", transient=1000, window=500)
     >>> (panel,) = plot(runs).axes
-    >>> panel.get_xlabel(), panel.get_ylabel(), len(panel.lines) > 0
-    ('$a$', '$\\langle J\\rangle$', True)
+    >>> panel.get_xlabel(), len(panel.lines) > 0
+    ('$a$', True)
     """
     # Imported here so that matplotlib is loaded only for a picture.
     from matplotlib.axes import Axes
