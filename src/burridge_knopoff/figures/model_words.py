@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.point import POINT_VARIABLES
+from burridge_knopoff.dataset.variables import TIMES
 from burridge_knopoff.laws import LAWS
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_V
@@ -21,7 +21,7 @@ GREEK = ("alpha", "beta", "gamma", "delta", "epsilon", "eta", "theta", "kappa", 
 PAPER = {"v": PAPER_V, **{name: getattr(Chain, name) for name in CHAIN_PARAMETERS}}
 
 # Coordinates of runs that are numbers, but no parameters of the model.
-_OF_RUNS = POINT_VARIABLES.keys() - {"a", "v"}
+_OF_RUNS = {"batch", "level", "trajectory_time", *TIMES.values()}
 
 
 def symbol(name: str) -> str:
