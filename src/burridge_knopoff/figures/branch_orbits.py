@@ -18,9 +18,6 @@ from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
-# Largest difference of an orbit from the first one, as a fraction of the range on the branch, at which it is closed.
-CLOSED = 1e-3
-
 
 def draw(branch: Sequence[BranchOrbit], bifurcations: Sequence[Bifurcation] = (), axes: Axes | None = None) -> Figure:
     """Draw ⟨J⟩ of the orbits along their parameter with a symbol at each bifurcation; T if all are synchronized."""
@@ -28,7 +25,6 @@ def draw(branch: Sequence[BranchOrbit], bifurcations: Sequence[Bifurcation] = ()
 
 
 def _branch(panel: Axes, branch: Sequence[BranchOrbit], bifurcations: Sequence[Bifurcation]) -> str:
-    branch = branch[: _once_around(branch)]
     orbits, parameter = [point.orbit for point in branch], branch[0].line.parameter
     # Without ends that move apart, ⟨J⟩ is 0.
     is_period = all(orbit.symmetry == Symmetry.SYNCHRONIZED or orbit.model.blocks == 1 for orbit in orbits)
@@ -45,18 +41,6 @@ def _branch(panel: Axes, branch: Sequence[BranchOrbit], bifurcations: Sequence[B
     panel.set(xlabel=f"${symbol(parameter)}$", ylabel="period $T$" if is_period else r"$\langle J\rangle$")
     widen_constant_axes(panel)
     return model_title(orbits[0].model, [parameter])
-
-
-def _once_around(branch: Sequence[BranchOrbit]) -> int:
-    """Return the number of orbits up to the first one that a closed branch passes again; that of all, if it is open."""
-    rows = np.array([(point.value, point.orbit.period, point.orbit.mean_distance) for point in branch])
-    side, upward = rows[:, 0] - rows[0, 0], np.array([point.tangent[-1] > 0.0 for point in branch])
-    for k in range(1, len(rows) - 1):
-        if side[k] * side[k + 1] < 0.0 and upward[k] == upward[k + 1] == upward[0]:
-            between = rows[k] + side[k] / (side[k] - side[k + 1]) * (rows[k + 1] - rows[k])
-            if (np.abs(between - rows[0]) <= CLOSED * np.ptp(rows, axis=0)).all():
-                return k + 2
-    return len(rows)
 
 
 def _with_ends(
