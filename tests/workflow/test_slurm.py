@@ -107,7 +107,7 @@ class Run:
 
 def test_a_study_survives_a_kill_a_restart_and_a_cancellation(finished, cluster, tmp_path):
     """What a killed run left is cancelled, since its config may be another one; a cancelled job is tried again."""
-    # These runs would take half an hour: some of them have begun, others wait.
+    # These runs would take many minutes: some of them have begun, others wait.
     long = TINY.replace("\ntransient: 100\n", "\ntransient: 500000000\nsampling: 100000\n")
     study = Study(tmp_path / "study", long.replace("\nsolvers: {a: [0.2], step: 0.01}\n", "\nwithout: [solvers]\n"))
     first = Run(study, "--group-components", "points=1")
