@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import subprocess
+import sys
 import threading
 import time
 import traceback
@@ -77,8 +80,7 @@ def run_point_job(
     from burridge_knopoff.dataset.simulated_point import simulate_point
 
     stop.heed()
-    benchmark = Path(results, benchmark_of(Path(log).relative_to(results).as_posix()))
-    remove_links(log, benchmark)
+    benchmark = _benchmark(log, results)
     wall, cpu = time.perf_counter(), time.thread_time()
     with open(log, "w", encoding="utf-8") as stream, reserved_room(stream):
         try:
@@ -89,9 +91,40 @@ def run_point_job(
             _write(stream, _failure(error))
             # Snakemake reports an exception as a failure of this job alone, and is silent about KeyboardInterrupt.
             raise RuntimeError(f"{path} was not made, see {log}") from None
-    benchmark.parent.mkdir(parents=True, exist_ok=True)
-    seconds = f"{time.perf_counter() - wall:.4f}\t{time.thread_time() - cpu:.4f}"
-    benchmark.write_text(f"s\tcpu_time\n{seconds}\n", encoding="utf-8")
+    _write_benchmark(benchmark, time.perf_counter() - wall, time.thread_time() - cpu)
+
+
+def run_point_command(command: str, path: str, log: str, results: str) -> None:
+    """Make a point by a command of `bk simulate`, in a process of its own. Its log has what the command prints.
+
+    results : as for `run_point_job`
+    Raises RuntimeError, one line, if the point fails; its log then has the reason.
+    """
+    benchmark = _benchmark(log, results)
+    wall, before = time.perf_counter(), os.times()
+    with open(log, "w", encoding="utf-8") as stream, reserved_room(stream):
+        # `bk` lies beside this Python, which need not be in the path.
+        search = {"PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ.get('PATH', os.defpath)}"}
+        words = ["sh", "-c", f"exec {command}"]
+        code = subprocess.run(words, stdout=subprocess.DEVNULL, stderr=stream, env=os.environ | search).returncode
+    # A run that stopped at a limit is a result as well.
+    if code not in (0, 3):
+        raise RuntimeError(f"{path} was not made, see {log}")
+    now = os.times()
+    used = now.children_user + now.children_system - before.children_user - before.children_system
+    _write_benchmark(benchmark, time.perf_counter() - wall, used)
+
+
+def _benchmark(log: str, results: str) -> Path:
+    """Return the file with the times of a job; neither it nor the log may be a link to another file."""
+    benchmark = Path(results, benchmark_of(Path(log).relative_to(results).as_posix()))
+    remove_links(log, benchmark)
+    return benchmark
+
+
+def _write_benchmark(path: Path, wall: float, cpu: float) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(f"s\tcpu_time\n{wall:.4f}\t{cpu:.4f}\n", encoding="utf-8")
 
 
 def _failure(error: BaseException) -> str:

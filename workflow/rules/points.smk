@@ -1,6 +1,6 @@
 # Points: one simulation for each friction law, initial state and value of a, or of several parameters. In a study over a
 # each point is a job; in one over several parameters each chunk of consecutive points is a job. A point takes less time than
-# a start of Python: it is simulated in a thread of Snakemake.
+# a start of Python: it is simulated in a thread of Snakemake, on a cluster in a process of its own.
 POINT = STUDY.point_file.removesuffix(".nc")
 GRID = {
     "law": STUDY.laws,
@@ -29,7 +29,11 @@ rule simulate:
         "simulate {wildcards.law} law, initial state {wildcards.initial}, "
         + ", ".join(f"{name} = {{wildcards.{word}}}" for word, name in STUDY.wildcards.items())
     run:
-        run_point_job(STUDY, wildcards, output[0], log[0], RESULTS, STOP)
+        if workflow.remote_exec:
+            # A cluster ends a job by signals, which the thread of a run does not see.
+            run_point_command(f"{params.command} --out {output}", output[0], log[0], RESULTS)
+        else:
+            run_point_job(STUDY, wildcards, output[0], log[0], RESULTS, STOP)
 
 
 internals.run_in_thread(rules.simulate, "{params.command} --out {output}")

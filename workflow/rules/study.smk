@@ -47,7 +47,11 @@ from burridge_knopoff.study.keys import (
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.model import MODEL_KEYS
 from burridge_knopoff.study.paths import VALUE
-from burridge_knopoff.point_job import run_point_job, stop_on_interrupt
+from burridge_knopoff.point_job import (
+    run_point_command,
+    run_point_job,
+    stop_on_interrupt,
+)
 from burridge_knopoff.study.remarks import (
     change_remarks,
     override_remarks,
