@@ -10,9 +10,10 @@ import time
 import pytest
 
 from burridge_knopoff.dataset.point import write_point
-from burridge_knopoff.point_job import Interrupt, run_point_job
+from burridge_knopoff.point_job import Interrupt, run_point_command, run_point_job
 from burridge_knopoff.provenance.opening import open_whole
 from burridge_knopoff.report.stages import job_costs
+from burridge_knopoff.running.command import simulate_command
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.study.load import load_study
 
@@ -45,6 +46,24 @@ def test_the_file_is_that_of_the_run_and_the_log_is_empty(tmp_path):
     ((wall, cpu, _),) = job_costs(tmp_path / "results/short/benchmarks/simulate/nonlinear/0.0500.tsv")
     assert cpu > 0.0
     assert wall > 0.0
+
+
+def test_a_process_makes_the_same_point(tmp_path):
+    """As on a cluster: its command, whose failure is in the log, and which a signal ends."""
+    study = load_study(CONFIG, "short.yaml")
+    path, log = make(study, tmp_path, POINT)
+    expected, results = path.read_bytes(), tmp_path / "results/short"
+    path.unlink()
+    command = simulate_command(*study.run_of(**POINT))
+    run_point_command(f"{command} --out {path}", str(path), str(log), str(results))
+    assert path.read_bytes() == expected
+    ((wall, cpu, _),) = job_costs(results / "benchmarks/simulate/nonlinear/0.0500.tsv")
+    assert wall > cpu > 0.0
+    with pytest.raises(RuntimeError, match="was not made, see"):
+        run_point_command(f"{command} --v -1 --out {path}", str(path), str(log), str(results))
+    assert log.read_text().startswith("bk simulate: v: got -1.0")
+    with pytest.raises(RuntimeError, match="was not made, see"):
+        run_point_command("sh -c 'kill -TERM $$'", str(path), str(log), str(results))
 
 
 def test_many_points_in_threads(tmp_path):
