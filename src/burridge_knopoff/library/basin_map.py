@@ -99,6 +99,8 @@ def basin_map(
     tile = basin_summary.tile(candidates, 0, plane, settings.label_limit, start)
     pairs = basin_summary.pairs(candidates, plane, settings.label_limit, settings.seed, start)
     basins = basin_summary.merge([(model, [tile], pairs)], attractors, plane, settings.label_limit, start)
+    # The law is a coordinate: as an attribute it means a part of a file of a study.
+    numbers = {name: value for name, value in model_attributes(model).items() if name != "law"}
     for dataset in (attractors, basins):
-        dataset.attrs |= {"history": "burridge_knopoff.basin_map", **model_attributes(model)}
+        dataset.attrs |= {"history": "burridge_knopoff.basin_map", **numbers}
     return basins, attractors
