@@ -50,7 +50,7 @@ def test_each_cell_says_its_parameters_and_its_run():
 
 
 @pytest.mark.parametrize(
-    ("parameters", "titles"), [(("a",), []), (("a", "v", "coupling"), ["coupling = 1", "coupling = 2"])]
+    ("parameters", "titles"), [(("a",), []), (("a", "v", "coupling"), ["coupling 1", "coupling 2"])]
 )
 def test_a_curve_has_no_map_and_further_parameters_have_panels(parameters, titles):
     assert [title.split(", ")[-1] for title, _ in maps(grid_of(*parameters))] == titles
