@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.dataset.point import model_attributes
-from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings, takes_model
-from burridge_knopoff.library.model_forms import GivenLaw, model_of
+from burridge_knopoff.library.keyword_settings import settings_of, show_settings, takes_model
+from burridge_knopoff.library.model_forms import GivenLaw, model_and_settings
 from burridge_knopoff.library.state_forms import Initial, initial_numbers, state_blocks
 from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.sampling import POSITIONS
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
@@ -69,16 +68,16 @@ def basin_map(
     from burridge_knopoff.summaries import basins as basin_summary
     from burridge_knopoff.summaries.multistability import coexisting_attractors
 
-    search, parameters = divide(by_name, SearchSettings)
-    model = model_of(
+    model, search = model_and_settings(
+        SearchSettings,
         law,
         a,
+        by_name,
+        v=v,
         chain=chain,
         blocks=blocks,
         contact=contact,
         state_blocks=state_blocks(initial),
-        parameters={"v": v, **parameters},
-        settings=fields_of(SearchSettings),
     )
     if model.blocks < 2:
         raise ValueError("blocks: got 1, expected at least 2, since a map has the axes U_1(0) and U_N(0)")

@@ -10,12 +10,11 @@ import numpy as np
 from burridge_knopoff.attractors import search as attractors
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.settings import SearchSettings
-from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings, takes_model
-from burridge_knopoff.library.model_forms import GivenLaw, model_of
+from burridge_knopoff.library.keyword_settings import settings_of, show_settings, takes_model
+from burridge_knopoff.library.model_forms import GivenLaw, model_and_settings
 from burridge_knopoff.library.state_forms import Initial, state_blocks, state_in
 from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import STARTS, Model
 from burridge_knopoff.model.ranges import OneOf
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
@@ -65,26 +64,19 @@ def find_attractors(
     >>> labels.shape, labels[-1].item()
     ((13,), 1)
     """
-    named, parameters = divide(by_name, SearchSettings)
     instance_of(motion, MotionSettings, "motion")
     OneOf(STARTS).form(start, "start")
     states = elements(starts)
     if states is None:
         raise refusal("starts", starts, "a list of initial states")
-    model = model_of(
-        law,
-        a,
-        chain=chain,
-        blocks=blocks,
-        contact=contact,
-        state_blocks=state_blocks(states[0], "starts[0]") if states else 3,
-        parameters={"v": v, **parameters},
-        settings=fields_of(SearchSettings),
+    number = state_blocks(states[0], "starts[0]") if states else 3
+    model, named = model_and_settings(
+        SearchSettings, law, a, by_name, v=v, chain=chain, blocks=blocks, contact=contact, state_blocks=number
     )
     return attractors.find_attractors(
         model,
         settings_of(SearchSettings, settings, named),
         motion,
-        starts=[state_in(model, state, f"starts[{number}]") for number, state in enumerate(states)],
+        starts=[state_in(model, state, f"starts[{index}]") for index, state in enumerate(states)],
         start=start,
     )

@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import Any
 
 from burridge_knopoff.laws import LAWS, Law, law_of, unknown_law
+from burridge_knopoff.library.keyword_settings import divide
 from burridge_knopoff.messages import format_value, full_key, suggestion
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
@@ -40,7 +41,7 @@ def model_of(
     chain, blocks : a chain, or a number of blocks of a plain row; by default a row of `state_blocks`, None if not known
     contact : see `Model`
     parameters : further ones by name, as in `Model.at`: v, those of the law and of the chain; None for the model's own
-    settings : names of the settings of the call, which its law may not have as parameters
+    settings : names of the settings of the call, for messages
 
     Raises ValueError, one line, for a wrong argument, and for a chain, blocks or contact together with a model, which
     has its own.
@@ -69,6 +70,17 @@ def model_of(
     others = {name: value for name, value in values.items() if name in of_chain}
     _check_names(model, others, settings)
     return model.at(**others)
+
+
+def model_and_settings(
+    kind: type, law: Model | GivenLaw, a: Any, by_name: Mapping[str, Any], *, v: float | None, **shape: Any
+) -> tuple[Model, dict[str, Any]]:
+    """Return the model of a call, and the settings of a class among its arguments by name; the others are parameters.
+
+    shape : further arguments of `model_of`, which raises the same errors
+    """
+    named, parameters = divide(by_name, kind)
+    return model_of(law, a, **shape, parameters={"v": v, **parameters}, settings=fields_of(kind)), named
 
 
 def _law_at(law: GivenLaw, a: float | None, numbers: Mapping[str, Any], settings: Iterable[str]) -> Law:

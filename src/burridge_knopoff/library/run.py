@@ -17,6 +17,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+def motion_of(run: Trajectory, settings: MotionSettings) -> Motion:
+    """Return the kind of motion of a run; settings : thresholds at v = 0.1."""
+    scaled = settings.scaled_to_velocity(run.model.v)
+    return motion_of_run(vars(run), run.model.chain.is_mirror_symmetric, scaled)
+
+
 class Run(Trajectory):
     """A `Trajectory` that can be plotted and turned into a Dataset; `simulate` returns one.
 
@@ -47,9 +53,7 @@ class Run(Trajectory):
 
         A study compares the run with the attractors at its a as well, which are followed for longer.
         """
-        instance_of(settings, MotionSettings, "settings")
-        scaled = settings.scaled_to_velocity(self.model.v)
-        return motion_of_run(vars(self), self.model.chain.is_mirror_symmetric, scaled)
+        return motion_of(self, instance_of(settings, MotionSettings, "settings"))
 
     def plot(self) -> Figure:
         """Return a figure of J(τ) and of the velocities U_i'(τ) in the last part of the run."""

@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from burridge_knopoff.laws import Law
-from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings, takes_model
-from burridge_knopoff.library.model_forms import GivenLaw, model_of
+from burridge_knopoff.library.keyword_settings import settings_of, show_settings, takes_model
+from burridge_knopoff.library.model_forms import GivenLaw, model_and_settings
 from burridge_knopoff.library.run import Run
 from burridge_knopoff.library.state_forms import Initial, state_blocks, state_in, warn_of_cost
 from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
@@ -65,16 +64,8 @@ def simulate(
     """
     if not isinstance(law, Model | Law) and a is None:
         a = 0.08
-    named, parameters = divide(by_name, Settings)
-    model = model_of(
-        law,
-        a,
-        chain=chain,
-        blocks=blocks,
-        contact=contact,
-        state_blocks=state_blocks(initial),
-        parameters={"v": v, **parameters},
-        settings=fields_of(Settings),
+    model, named = model_and_settings(
+        Settings, law, a, by_name, v=v, chain=chain, blocks=blocks, contact=contact, state_blocks=state_blocks(initial)
     )
     state = state_in(model, initial)
     chosen = settings_of(Settings, settings, named)

@@ -16,6 +16,7 @@ from burridge_knopoff.dataset.variables import PERIOD, Variable, flag
 from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings, takes_model
 from burridge_knopoff.library.model_forms import GivenLaw, model_of
 from burridge_knopoff.library.progress import Progress, progress_bar
+from burridge_knopoff.library.run import motion_of
 from burridge_knopoff.library.state_forms import (
     Initial,
     final_state,
@@ -31,7 +32,7 @@ from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.parameters import plain_name, remarks_on_states
 from burridge_knopoff.model.ranges import Whole
-from burridge_knopoff.motion.kind import MotionKind, motion_of_run
+from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.running.cores import available_cores
 from burridge_knopoff.running.runner import LOCKSTEP_RUNS, check_state, run_together
@@ -230,8 +231,7 @@ def _run_together(
         values = point_values(run)
         common = {name: values[name] for name in _COMMON}
         if motion is not None:
-            scaled = motion.scaled_to_velocity(point.model.v)
-            outcome = motion_of_run(vars(run), point.model.chain.is_mirror_symmetric, scaled)
+            outcome = motion_of(run, motion)
             common |= {"kind": outcome.kind, "period": outcome.period}
         runs.append((common, point_attributes(run)))
     return runs
