@@ -165,9 +165,12 @@ def test_all_subpackages_except_those_of_a_study_can_be_imported(installed, tmp_
 
 
 def test_the_python_of_the_page_on_results_runs(installed, tmp_path, repository):
-    texts = [block.text for block in blocks((repository / "docs/results.md").read_text()) if block.info == "python"]
-    # A session reads the files of a study.
-    texts = [text for text in texts if not text.startswith(">>>")]
+    # The other blocks read the files of a study.
+    texts = [
+        block.text
+        for block in blocks((repository / "docs/results.md").read_text())
+        if (block.info, block.heading) == ("python", "A single run")
+    ]
     assert texts
     for text in texts:
         run(installed, tmp_path, "-c", text)
