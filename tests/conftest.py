@@ -16,6 +16,7 @@ import shutil
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -175,6 +176,7 @@ def maps(monkeypatch):
     from burridge_knopoff.motion import classification
     from tests.maps import Clouds, Ensemble, observe, visit
 
+    monkeypatch.setattr(search, "sliding_motion", lambda _: SimpleNamespace(exponent=[1.0]))
     for module in (convergence, search, slow_set):
         monkeypatch.setattr(module, "visit", visit)
     monkeypatch.setattr(labels, "new_ensemble", Ensemble)

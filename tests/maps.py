@@ -59,7 +59,7 @@ def rows_of(x):
 
 def visit(model, start, transient, window):
     x = model.orbit(start.position[0], transient + window)[int(transient) :]
-    return returns_of(model, window, np.ones(len(x)), rows_of(x).__getitem__)
+    return returns_of(model, window, np.arange(len(x)), np.ones(len(x)), rows_of(x).__getitem__)
 
 
 def observe(model, start, transient, window, settings, mean_distance=None, exponents=2):
@@ -69,7 +69,7 @@ def observe(model, start, transient, window, settings, mean_distance=None, expon
     batches = [part.mean() for part in np.array_split(growth, BATCHES)]
     exponent = np.sort([0.0, growth.mean()])[::-1]
     error = np.where(exponent == 0.0, 0.0, np.std(batches) / np.sqrt(BATCHES))
-    section_returns = returns_of(model, window, np.ones(len(x)), rows_of(x).__getitem__)
+    section_returns = returns_of(model, window, np.arange(len(x)), np.ones(len(x)), rows_of(x).__getitem__)
     points = repetition_length(x, settings.period_tolerance, int(min(settings.longest_period, len(x) // 3)))
     motion = motion_from_period(points, float(points) if points else np.nan, np.inf, exponent, error, settings)
     return SteadyMotion(
@@ -97,7 +97,7 @@ class Ensemble:
     def __init__(self, model):
         self.model = model
 
-    def label(self, position, velocity, stuck, clouds, close_returns, section, end):
+    def label(self, position, velocity, stuck, clouds, close_returns, block, section, end):
         x = position[:, 0].copy()
         labels_, times = np.full(len(x), -1, dtype=np.intc), np.zeros(len(x))
         counts = np.zeros((len(clouds.near), len(x)), dtype=int)

@@ -104,7 +104,7 @@ def test_kinds_in_words():
         (1e-9, 1, (0.02, 0.0), 1e-3, MotionKind.SYNCHRONIZED),
         (0.1, 2, (0.02, 0.0), 1e-3, MotionKind.PERIODIC),
         # Uniform sliding: its section points are rounding.
-        (0.1, 2, (-0.01, -0.02), 1e-5, MotionKind.UNDETERMINED),
+        (0.1, 2, (-0.01, -0.02), 1e-5, MotionKind.SLIDING),
         (0.1, 2, (-0.01, -0.02), 1e-2, MotionKind.PERIODIC),
         # Weak chaos or regular motion: the error allows both, unless the exponent is at most that of regular motion.
         (0.1, 0, (2e-3, -0.01), 1e-3, MotionKind.UNDETERMINED),
@@ -120,7 +120,7 @@ def test_kinds_in_words():
         (1e-9, 0, (0.0, -9e-4), 1e-3, MotionKind.QUASIPERIODIC),
         (1e-9, 0, (0.0, -1.1e-3), 1e-3, MotionKind.UNDETERMINED),
         (0.1, 0, (0.0, -1.1e-3), 1e-3, MotionKind.QUASIPERIODIC),
-        (0.1, 0, (-0.01, -0.02), 1e-5, MotionKind.UNDETERMINED),
+        (0.1, 0, (-0.01, -0.02), 1e-5, MotionKind.SLIDING),
         # Without exponents, only a repetition of the section points is conclusive.
         (0.1, 5, (), 1e-5, MotionKind.PERIODIC),
         (0.1, 0, (), 1e-5, MotionKind.UNDETERMINED),
@@ -320,7 +320,8 @@ def test_stable_uniform_sliding_is_not_periodic_motion():
     run = simulate(model, initial="plus", transient=2000.0, window=2000.0)
     assert run.lyapunov_exponent[0] < -0.01
     motion = motion_of_run(vars(run), True, MOTION)
-    assert (motion.kind, motion.section_period) == (MotionKind.UNDETERMINED, 0)
+    assert (motion.kind, motion.section_period) == (MotionKind.SLIDING, 0)
+    assert motion_of_run(vars(run) | {"event_time": np.ones(1)}, True, MOTION).kind == MotionKind.UNDETERMINED
 
 
 def test_motion_that_repeats_without_section_points_is_periodic():

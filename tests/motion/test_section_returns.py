@@ -20,8 +20,10 @@ def test_returns_are_taken_at_the_outermost_block_that_stops(stopping, block, mi
     states = np.random.default_rng(3).uniform(size=(80, 8))
     chain, stops = Model(Chain(4), law_of("linearized", 0.1)), np.isin(number, stopping)
     number, states = number[stops], states[stops]
-    motion = returns_of(chain, 40.0, number, states.__getitem__)
-    mirrored = returns_of(chain, 40.0, 5 - number, states[:, [3, 2, 1, 0, 7, 6, 5, 4]].__getitem__)
+    motion = returns_of(chain, 40.0, np.arange(len(number)), number, states.__getitem__)
+    mirrored = returns_of(
+        chain, 40.0, np.arange(len(number)), 5 - number, states[:, [3, 2, 1, 0, 7, 6, 5, 4]].__getitem__
+    )
     if block is None:
         assert motion is None
         return
@@ -41,7 +43,7 @@ def test_eight_returns_show_a_set_and_its_mirror_image(first, last, symmetric, s
     chain = Chain(3, threshold=1.0 if symmetric else (1.0, 1.0, 0.9))
     block = np.array([1] * first + [3] * last)
     states = np.random.default_rng(3).uniform(size=(len(block), 6))
-    motion = returns_of(Model(chain, law_of("linearized", 0.1)), 40.0, block, states.__getitem__)
+    motion = returns_of(Model(chain, law_of("linearized", 0.1)), 40.0, np.arange(len(block)), block, states.__getitem__)
     assert (motion is not None) == seen
 
 

@@ -149,7 +149,7 @@ def test_branches_are_named_by_symmetry_and_sticks():
     rate = np.ones((2, 2, 2, 3))
     rate[branch == 1] = [0.2, 0.0, 0.2]
     rate[branch == 3] = [0.0, 0.1, 0.0]
-    names = name_branches(branch, symmetry, rate)
+    names = name_branches(branch, symmetry, rate, np.ones_like(branch))
     assert names["branch_number"].tolist() == [0, 1, 2, 3, 4]
     assert names["branch_name"].tolist() == [
         "synchronized",

@@ -116,7 +116,7 @@ def test_the_digest_describes_each_branch(one_law):
     ]
     assert branch_numbering.digest(dataset).splitlines() == [ABOUT, "", f"{head}; no attractor at a = 0.2", *rows]
     dataset["sliding_attracts"][0, 2] = 1
-    sliding = "uniform sliding, which has no stops and is not searched for, attracts at a = 0.2"
+    sliding = "no attractor at a = 0.2; uniform sliding attracts at a = 0.2"
     assert branch_numbering.digest(dataset).splitlines()[2:] == [f"{head}; {sliding}", *rows]
     assert max(map(len, branch_lines(dataset, 80))) <= 80
 

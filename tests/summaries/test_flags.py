@@ -8,7 +8,7 @@ YES_NO = {0: "no", 1: "yes"}
 STATUS = {0: "completed", 1: "step_limit", 2: "accumulating_events", 3: "diverged"}
 MOTION = {
     **{-1: "undetermined", 0: "synchronized", 1: "periodic", 2: "quasiperiodic", 3: "chaotic"},
-    **{4: "transient_chaos", 5: "synchronized_chaos"},
+    **{4: "transient_chaos", 5: "synchronized_chaos", 6: "sliding"},
 }
 BIFURCATION = {
     -1: "undetermined",

@@ -15,7 +15,7 @@ from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.classification import Classifier
 from burridge_knopoff.motion.kind import CHAOS, periodic_orbit_kind, synchronization_distance
 from burridge_knopoff.motion.observables import SteadyMotion
-from burridge_knopoff.motion.section_returns import Returns, has_same_stop_shares, visit
+from burridge_knopoff.motion.section_returns import Returns, ReturnSection, has_same_stop_shares, visit
 from burridge_knopoff.motion.set_distance import SPACINGS, is_near, minimum_distance
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 
@@ -125,6 +125,9 @@ class Convergence:
     def measure(self, section: Returns, again: int = 0) -> tuple[Returns, SteadyMotion] | None:
         """Measure a settled motion. If it turns out to be a transient, return the motion that follows it instead."""
         settings = self.settings
+        # Uniform sliding that is not among the attractors is unstable.
+        if section.section == ReturnSection.SLIDING:
+            return None
         closed, window = section.has_periodic_spacing(self.tolerance), self.measuring_window(section)
         motion = self.classifier(settings.transient, window).measure(section.state())
         if motion is None:

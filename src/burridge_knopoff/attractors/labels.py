@@ -68,9 +68,10 @@ def label_arrays(
             [attractor.radius for attractor in attractors],
         )
         returns = [attractor.close_returns for attractor in attractors]
-        section = [attractor.motion.block - 1 for attractor in attractors]
+        block = [attractor.motion.block - 1 for attractor in attractors]
+        section = [int(attractor.motion.section) for attractor in attractors]
         begun = position[states], velocity[states], stuck[states].astype(bool)
-        return new_ensemble(model).label(*begun, clouds, returns, section, end)
+        return new_ensemble(model).label(*begun, clouds, returns, block, section, end)
 
     labels, times, last = first(attractors, slice(None), time_limit)
     prompt = [index for index, attractor in enumerate(attractors) if not attractor.patience]

@@ -24,7 +24,7 @@ from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.sampling import CONFIDENCE
 from burridge_knopoff.motion.kind import CHAOS
-from burridge_knopoff.motion.section_returns import state_of
+from burridge_knopoff.motion.section_returns import ReturnSection, state_of
 from burridge_knopoff.motion.set_distance import SPACINGS
 
 #: Number of trajectories that are followed, and their total time, in units of the lifetime above which chaos counts as
@@ -186,5 +186,6 @@ def _capture_time(model: Model, attractor: Attractor) -> float:
     if rate < 1.0 / LONGEST_PATIENCE:
         return LONGEST_PATIENCE
     nearer = math.log(ESCAPE_DISTANCE * model.scale / attractor.radius) / rate
-    close = attractor.close_returns / motion.stop_rate[motion.block - 1]
+    stops = motion.section == ReturnSection.STOPS
+    close = attractor.close_returns / (motion.stop_rate[motion.block - 1] if stops else motion.return_rate)
     return CAPTURE_MARGIN * (max(nearer, 0.0) + close)

@@ -21,8 +21,8 @@ from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.sampling import sample_initial_states
 from burridge_knopoff.motion.kind import CHAOS
-from burridge_knopoff.motion.observables import SteadyMotion, is_on_attractor
-from burridge_knopoff.motion.section_returns import Returns, state_of, visit
+from burridge_knopoff.motion.observables import SteadyMotion, is_on_attractor, sliding_motion
+from burridge_knopoff.motion.section_returns import Returns, ReturnSection, state_of, visit
 from burridge_knopoff.motion.set_distance import is_near
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbit
@@ -48,9 +48,11 @@ def find_attractors(
     start : moving or tested, see `Model.begin`
 
     The indices have shape (settings.samples + len(starts),), drawn states first; −1 if a state does not settle on an
-    attractor. An attractor that no state reaches is not found. Neither is a motion without stops, since attractors are
-    identified by the states at the stops of the outermost block that stops regularly. Raises ValueError if an initial
-    state does not fit the model, and if there is none.
+    attractor. Attractors are identified by the states at the stops of the outermost block that stops regularly; those
+    without stops by the states at the maxima of the velocity of the outermost block that moves. Without stops, tori of
+    more than two frequencies are undetermined. Uniform sliding is among the attractors wherever it attracts.
+    Another attractor that no state reaches is not found. Raises ValueError if an initial state does not fit the model,
+    and if there is none.
 
     Times are in units of 1/ω. docs/search.md describes the search.
 
@@ -178,10 +180,22 @@ class Search(Convergence):
 
         check : whether some of the labels are verified by following the trajectories for longer
         """
+        self._add_sliding()
         for _ in range(ROUNDS):
             labels = self._discover_all(starts)
             if not check or (self._verify_labels(starts) and self._verify_chaotic_labels(starts, labels)):
                 break
+
+    def _add_sliding(self) -> None:
+        """Add uniform sliding if it attracts, which its eigenvalues tell; perturbations show its capture radius."""
+        if any(item.motion.section == ReturnSection.SLIDING for item in self.attractors):
+            return
+        motion = sliding_motion(self.model)
+        if motion.exponent[0] >= 0.0:
+            return
+        symmetry = Symmetry.SYMMETRIC if self.model.chain.is_mirror_symmetric else Symmetry.ASYMMETRIC
+        new = Attractor(self.model, motion, symmetry, len(self.attractors), close_returns=CLOSE_RETURNS)
+        self.attractors = self.accept(Candidate([new], SMALLEST_RADIUS, self.capture)) or self.attractors
 
     def _discover_all(self, starts: Sequence[ChainState]) -> np.ndarray:
         """Add the attractors to which some of the states lead, and return the first one that each state comes near.
@@ -311,9 +325,12 @@ class Search(Convergence):
     def candidates(self, section: Returns, motion: SteadyMotion) -> Iterator[Candidate]:
         """Yield the attractors to which a converged motion may belong, the first to be accepted being the one."""
         closed = section.has_periodic_spacing(self.tolerance)
+        stops = section.section == ReturnSection.STOPS
+        if not (stops or closed or motion.kind in CHAOS or self._is_attracting_torus(motion)):
+            return
         mirror = self.model.chain.is_mirror_symmetric
         synchronized = mirror and motion.mean_distance < self.motion_settings.synchronization_threshold
-        if mirror and not synchronized and motion.mean_distance < self.resolution:
+        if mirror and stops and not synchronized and motion.mean_distance < self.resolution:
             yield from self._slow_synchrony()
             return
         enough = required_returns(section, self.tolerance)
@@ -325,7 +342,7 @@ class Search(Convergence):
         # Synchrony that does not attract is unstable. Other motion may lie on a slow set that attracts as a whole. A
         # periodic orbit embedded in chaos does not: it may attract from nearby only. The same holds if perturbations
         # decay faster than it takes to sample a slow set.
-        if mirror and motion.mean_distance < NEXT_TO_SYNCHRONY * self.resolution:
+        if not stops or (mirror and motion.mean_distance < NEXT_TO_SYNCHRONY * self.resolution):
             return
         quick = motion.exponent[1] * SLOW_TIME * self.settings.transient < -1.0
         if not (closed and (quick or self.is_embedded_in_chaos(section))):
@@ -334,6 +351,14 @@ class Search(Convergence):
             yield Candidate([replace(item, slow=True) for item in images], SMALLEST_RADIUS, self.capture)
         if closed:
             yield Candidate(new, TINY_RADIUS, self.capture)
+
+    def _is_attracting_torus(self, motion: SteadyMotion) -> bool:
+        """Return whether a torus without stops attracts, by its third exponent.
+
+        Otherwise it is one of a continuum of neutral motions, as without friction or under friction that is linear in
+        the speed, or has more than two frequencies.
+        """
+        return bool((motion.exponent[2:3] < -self.motion_settings.zero_exponent).any())
 
     def _images(self, motion: SteadyMotion, symmetric: bool, enough: int) -> list[Attractor]:
         """Return a motion as a candidate attractor, together with its mirror image if that is different.

@@ -16,11 +16,12 @@ from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.labels import UNDETERMINED
 from burridge_knopoff.attractors.table import Row
 from burridge_knopoff.dataset.summary import axes, summary
-from burridge_knopoff.dataset.variables import Variable
+from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.messages import format_value, refusal
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.motion.observables import SteadyMotion
+from burridge_knopoff.motion.section_returns import ReturnSection
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
 _RETURN = ("section_return", "block")
@@ -32,15 +33,24 @@ VARIABLES = {
     "return_count": Variable(
         ("attractor",), "i4", "section returns of the attractor", {"sample_dimension": "section_return"}
     ),
-    "section_block": Variable(("attractor",), "i4", "block of the returns: the returns are taken at its stops"),
+    "section_block": Variable(
+        ("attractor",), "i4", "block of the returns: the returns are taken at its stops, or as `section` says"
+    ),
+    "section": Variable(
+        ("attractor",),
+        "i1",
+        "section of the returns: stops of the block, maxima of its velocity in motion without stops, or the one state "
+        "of uniform sliding",
+        flag("i1", {int(item): item.name.lower() for item in ReturnSection}),
+    ),
     "spacing": Variable(("attractor",), "f8", "distance between neighbouring returns"),
     "position": Variable(
         _RETURN,
         "f8",
-        "positions at a stop of that block",
+        "positions on the section",
         {"comment": "relative to the driver: U - v*tau, U the position of the paper"},
     ),
-    "velocity": Variable(_RETURN, "f8", "velocities U' at this stop"),
+    "velocity": Variable(_RETURN, "f8", "velocities U' there"),
 }
 
 
@@ -61,6 +71,7 @@ def returns_of_law(models: Sequence[Model], rows: Sequence[Sequence[Row]], about
         "slot": [slot for _, slot, _ in held],
         "return_count": [len(motion.returns) for *_, motion in held],
         "section_block": [motion.block for *_, motion in held],
+        "section": [motion.section for *_, motion in held],
         "spacing": [motion.spacing for *_, motion in held],
         "position": np.concatenate(
             [none, *(motion.returns[:, :blocks] + model.sliding_offset for model, _, motion in held)]
@@ -132,6 +143,7 @@ def known_attractors(attractors: xarray.Dataset, returns: xarray.Dataset, model:
             block=int(returns["section_block"].values[row]),
             mirror_block=int(returns["section_block"].values[row_of[image]]),
             period=fields["period"].item(),
+            section=ReturnSection(returns["section"].values[row].item()),
         )
         fixed = {name: fields[name].item() for name in ("radius", "close_returns", "patience")}
         symmetry = Symmetry(fields["symmetry"].item())

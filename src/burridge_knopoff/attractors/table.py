@@ -166,24 +166,31 @@ def slot_values(
     return column_values(slot_variables(dimension), slots, shape)
 
 
-def name_branches(branch: np.ndarray, symmetry: np.ndarray, stop_rate: np.ndarray) -> dict[str, np.ndarray]:
+def name_branches(
+    branch: np.ndarray, symmetry: np.ndarray, stop_rate: np.ndarray, kind: np.ndarray
+) -> dict[str, np.ndarray]:
     """Return the values of NAMES.
 
-    branch, symmetry : of slots, of one shape; stop_rate : of the same shape and (block,)
+    branch, symmetry, kind : of slots, of one shape; stop_rate : of the same shape and (block,)
 
     Synchronized; alternating, where the motion is its own mirror image, half a period later if it has one, so that the
     end blocks take turns; mirror pair, where one of two mirror images has one end block ahead; or none of these in a
-    chain that is not its own mirror image. Blocks that hardly ever stick are named: at no a, or at some.
+    chain that is not its own mirror image. Blocks that never stick on the branch are named; uniform sliding has that
+    name.
     """
     numbers = np.unique(branch[branch >= 0])
     names = []
     for number in numbers.tolist():
         slots = branch == number
+        if (kind[slots] == MotionKind.SLIDING).all():
+            names.append(f"{MotionKind.SLIDING.words} ({number})")
+            continue
         kinds, counts = np.unique(symmetry[slots], return_counts=True)
         name = {Symmetry.SYNCHRONIZED: "synchronized", Symmetry.SYMMETRIC: "alternating"}.get(
             Symmetry(kinds[counts.argmax()]), "mirror pair" if (slots.sum(axis=-1) > 1).any() else "motion"
         )
         never = np.flatnonzero(~(stop_rate[slots] > 0.0).any(axis=0)) + 1
-        sliding = f", block {', '.join(map(str, never))} never sticks" if len(never) else ""
+        blocks = "no block" if len(never) == stop_rate.shape[-1] else f"block {', '.join(map(str, never))} never"
+        sliding = f", {blocks} sticks" if len(never) else ""
         names.append(f"{name}{sliding}{f' ({number})' if number else ''}")
     return {"branch_number": numbers, "branch_name": np.array(names, dtype=object)}

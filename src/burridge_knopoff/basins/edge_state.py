@@ -242,9 +242,9 @@ def _second_half(track: EdgeTrack) -> int:
 def _measure(track: EdgeTrack, orbit: PeriodicOrbit | None, settings: EdgeSettings) -> EdgeState:
     """Return the edge state on which a trajectory has settled, from its second half."""
     since, model = _second_half(track), track.model
-    _, values = track.events(since)
+    times, values = track.events(since)
     stops = values[values[:, 1] == 0]
-    section = returns_of(model, track.duration, stops[:, 0], lambda chosen: stops[chosen, 2:])
+    section = returns_of(model, track.duration, times[values[:, 1] == 0], stops[:, 0], lambda chosen: stops[chosen, 2:])
     exponent, error = _exponents(track.growth(since))
     displaced = DisplacedStates(track, since, settings)
     reached, crossing = displaced.counts()

@@ -13,6 +13,7 @@ from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.own_units import OwnUnits
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.motion.observables import SteadyMotion
+from burridge_knopoff.motion.section_returns import ReturnSection
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.periodic_orbits.branch_segment import HalfBranch
 from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine
@@ -24,5 +25,6 @@ from burridge_knopoff.running.section import Section
 CLASSES = (
     *(Model, Chain, ChainState, Section, FormulaLaw, *LAWS.values()),
     *(Search, SearchSettings, Capture, Attractor, SteadyMotion, MotionSettings, MotionKind, Symmetry, Lifetime),
+    ReturnSection,
     *(PeriodicOrbit, HalfBranch, BranchOrbit, ParameterLine, OwnUnits),
 )

@@ -18,6 +18,7 @@ from scipy.spatial import cKDTree
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.continuation.settings import REFINEMENT
 from burridge_knopoff.motion.kind import REGULAR, MotionKind
+from burridge_knopoff.motion.section_returns import ReturnSection, velocity_maxima
 from burridge_knopoff.motion.set_distance import distance
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
@@ -52,6 +53,22 @@ class Outline:
         """An even selection of the returns of the mirror image."""
         return _thin(self.attractor.motion.mirror_returns)
 
+    @cached_property
+    def at_maxima(self) -> Outline:
+        """The outline of the same set on the section of motion without stops."""
+        motion, model = self.attractor.motion, self.attractor.model
+        if motion.section == ReturnSection.MAXIMA:
+            return self
+        rows = velocity_maxima(model, motion.state(), 0.0, len(motion.returns) / motion.stop_rate[motion.block - 1])
+        returns = rows[rows[:, 1] == motion.block, 2:]
+        mirror_returns = returns[:0]
+        if len(motion.mirror_returns):
+            images = rows[rows[:, 1] == model.blocks + 1 - motion.mirror_block, 2:]
+            mirror_returns = images.reshape(-1, 2, model.blocks)[:, :, ::-1].reshape(images.shape)
+        motion = replace(motion, returns=returns, mirror_returns=mirror_returns, section=ReturnSection.MAXIMA)
+        own_image = self.attractor.symmetry == Symmetry.SYMMETRIC
+        return Outline(replace(self.attractor, motion=motion.symmetrized() if own_image else motion))
+
     def scaled(self, share: float) -> Outline:
         """Return the outline of the same set with all returns multiplied by a factor."""
         motion = self.attractor.motion
@@ -71,6 +88,9 @@ class Outline:
         return distances if share == 1.0 else np.minimum(distances, self._distances(other.scaled(share), bound))
 
     def _distances(self, other: Outline, bound: float) -> np.ndarray:
+        sections = {item.attractor.motion.section for item in (self, other)}
+        if sections == {ReturnSection.STOPS, ReturnSection.MAXIMA}:
+            return self.at_maxima._distances(other.at_maxima, bound)
         distances = np.full((2, 2), np.inf)
         distances[0] = distance(self.returns, other.tree, bound=bound), distance(other.returns, self.tree, bound=bound)
         if len(self.mirrored) and len(other.mirrored):
@@ -133,8 +153,8 @@ class DistanceMatcher(Matcher):
         """Return {key in `after`: key in `before`} of the sets that match; each matches at most one.
 
         Synchronized sets match only each other, the nearest if there are several: the motion that replaces synchrony
-        where it loses stability is another branch. Other sets are paired if they lie within SAME_SET, such that the sum
-        of the distances of all pairs is smallest.
+        where it loses stability is another branch. Uniform sliding matches only itself. Other sets are paired if they
+        lie within SAME_SET, such that the sum of the distances of all pairs is smallest.
 
         A periodic orbit on a torus, or in a window of chaos, lies close to the set while most of the set is far from
         the orbit. The smaller directed distance therefore decides whether two sets may match. If both an orbit and the
@@ -147,7 +167,8 @@ class DistanceMatcher(Matcher):
         for row, column in np.ndindex(cost.shape):
             later, earlier = after[second[row]], before[first[column]]
             synchronized = [item.attractor.symmetry == Symmetry.SYNCHRONIZED for item in (later, earlier)]
-            if synchronized[0] == synchronized[1]:
+            sliding = [item.attractor.motion.section == ReturnSection.SLIDING for item in (later, earlier)]
+            if synchronized[0] == synchronized[1] and sliding[0] == sliding[1]:
                 lesser, greater = later.distances(earlier, largest).T
                 near = lesser + np.minimum(greater, largest)
                 cost[row, column] = np.where(lesser < largest, near, 2.0 * largest).min()
@@ -157,12 +178,12 @@ class DistanceMatcher(Matcher):
         return {second[row]: first[column] for row, column in pairs if cost[row, column] < 2.0 * largest}
 
     def is_unchanged(self, before: Outline, after: Outline) -> bool:
-        """Return whether kind, symmetry and period are the same."""
+        """Return whether kind, symmetry and period are the same, and whether there are stops."""
         return self._features(before) == self._features(after)
 
-    def _features(self, outline: Outline) -> tuple[int, int, int]:
-        """Return kind, symmetry and section points of a motion, equal for a torus and all orbits that are too long."""
+    def _features(self, outline: Outline) -> tuple[int, int, int, int]:
+        """Return kind, symmetry, period and section of a motion, equal for a torus and all orbits that are too long."""
         attractor, motion = outline.attractor, outline.attractor.motion
         if motion.kind in REGULAR and not motion.period <= self.longest_period:
-            return MotionKind.QUASIPERIODIC, 0, 0
-        return motion.kind, attractor.symmetry, motion.section_period
+            return MotionKind.QUASIPERIODIC, 0, 0, motion.section
+        return motion.kind, attractor.symmetry, motion.section_period, motion.section

@@ -30,7 +30,10 @@ UNDETERMINED = "#000000"
 OTHER_SHADES = (OTHER_BRANCHES, "#666666", "#CCCCCC", "#444444")
 
 #: {number of a kind of motion: colour}. Undetermined motion is white; from periodic to chaotic motion colours darken.
-KINDS = {-1: "#FFFFFF", 0: SYNCHRONIZED, 1: "#DECCDA", 2: "#9992C2", 3: "#3C0820", 4: "#D7936B", 5: "#062278"}
+KINDS = {
+    **{-1: "#FFFFFF", 0: SYNCHRONIZED, 1: "#DECCDA", 2: "#9992C2", 3: "#3C0820", 4: "#D7936B", 5: "#062278"},
+    6: "#BBEEBB",
+}
 
 #: Blocks. Of three, the end blocks have a light and a dark shade of one hue, the middle block another hue.
 BLOCKS = ("#6CCBC0", "#E0457B", "#00423C", "#B08D57", "#7F9A20", "#8C6BB1", "#555555")

@@ -342,9 +342,24 @@ class Ensemble:
         stuck: Annotated[NDArray[numpy.bool_], dict(shape=(None, None), order="C", device="cpu", writable=False)],
         clouds: Clouds,
         returns: Sequence[int],
+        block: Sequence[int],
         section: Sequence[int],
         end: float,
     ) -> tuple:
         """
         The cloud that each state reaches, -1 for none, the end times, and the states at the end.
+
+        block : of the section of each cloud, from 0; section : its stops 0, maxima of its velocity 1, everywhere 2
+        """
+
+    def maxima(
+        self,
+        position: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order="C", device="cpu", writable=False)],
+        velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order="C", device="cpu", writable=False)],
+        stuck: Annotated[NDArray[numpy.bool_], dict(shape=(None, None), order="C", device="cpu", writable=False)],
+        begin: float,
+        end: float,
+    ) -> NDArray[numpy.float64]:
+        """
+        The maxima of the velocity of every block of one trajectory between two times, rows of time, block (from 1), positions and velocities.
         """

@@ -3,12 +3,15 @@
 namespace bk {
 
 void Ensemble::run(const double *position, const double *velocity, const bool *stuck, const std::vector<double> &times,
-                   Outcome &out, const Clouds *clouds, const std::vector<int> &returns,
-                   const std::vector<int> &section) {
+                   Outcome &out, const Clouds *clouds, const std::vector<Target> &targets, Maxima *maxima) {
     this->out = &out;
     this->times = &times;
     this->clouds = clouds;
-    streak.assign(size_t(LANES) * section.size(), 0);
+    this->maxima = maxima;
+    streak.assign(size_t(LANES) * targets.size(), 0);
+    turns.assign(blocks, maxima != nullptr);
+    for (const Target &target : targets)
+        if (target.section == MAXIMA) turns[target.block] = true;
     int next = 0;
     active = mask{};
     Watch watch;
@@ -20,7 +23,8 @@ void Ensemble::run(const double *position, const double *velocity, const bool *s
             for (int i = 0; i < blocks; i++)
                 state.place(size_t(i) * LANES + lane, position[first + i], velocity[first + i], stuck[first + i]);
             clock[lane] = clock_rest[lane] = count[lane] = unit_start[lane] = unit_count[lane] = 0.0;
-            for (size_t k = 0; k < section.size(); k++) streak[lane * section.size() + k] = 0;
+            for (size_t k = 0; k < targets.size(); k++) streak[lane * targets.size() + k] = 0;
+            for (int i = 0; i < blocks; i++) rising[i][lane] = 0;
             aim(lane, 0);
             member[lane] = next++;
             fresh[lane] = -1;
@@ -33,7 +37,7 @@ void Ensemble::run(const double *position, const double *velocity, const bool *s
         rounds++;
         watch.worked(blocks * LANES);
         finish(active & accumulating, ACCUMULATING_EVENTS);
-        move(returns, section);
+        move(targets);
     }
 }
 

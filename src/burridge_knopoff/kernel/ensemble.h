@@ -27,25 +27,48 @@ struct Outcome {
           event_block(size_t(count) * kept), event_kind(size_t(count) * kept) {}
 };
 
+// Where the trajectories that come near a cloud are compared with it: at the stops of a block, at the maxima of its
+// velocity, or, for an equilibrium, at the end of every piece.
+enum Section { STOPS, MAXIMA, EVERYWHERE };
+
+// A cloud of states on a section, and after how many successive states near it a trajectory has reached it.
+struct Target {
+    int block;  // from 0
+    Section section;
+    int returns;
+};
+
+// The maxima of the velocities of all blocks from a time on, of a single trajectory: rows of time, block (from 1), x_1
+// … x_N, U_1' … U_N'.
+struct Maxima {
+    double from;
+    std::vector<double> rows;
+};
+
 class Ensemble : public TrajectoryLanes {
   public:
     const Model &model;
     long long rounds = 0;
 
     Ensemble(const Model &model, long long rate_limit)
-        : TrajectoryLanes(model), model(model), rate_limit(double(rate_limit)), slipped(blocks) {}
+        : TrajectoryLanes(model), model(model), rate_limit(double(rate_limit)), slipped(blocks), turn_position(blocks),
+          turn_velocity(blocks), rising(blocks), turns(blocks) {}
 
     // Integrate trajectories from positions x_i, velocities U_i' and stuck blocks, shape (count, blocks), to the last
     // of some ascending times, and store their states at all these times. At an event the state before it is stored.
     //
-    // clouds : states (x_i, U_i') at stops. A trajectory ends with the label of a cloud when `returns` successive stops
-    // of the block `section` of this cloud have been near it
+    // clouds, targets : states (x_i, U_i') on a section, for each cloud. A trajectory ends with the label of a cloud
+    // when enough successive states on this section have been near it
+    // maxima : if given, the maxima of the velocities of the only trajectory are added to it
     void run(const double *position, const double *velocity, const bool *stuck, const std::vector<double> &times,
-             Outcome &out, const Clouds *clouds, const std::vector<int> &returns, const std::vector<int> &section);
+             Outcome &out, const Clouds *clouds = nullptr, const std::vector<Target> &targets = {},
+             Maxima *maxima = nullptr);
 
   private:
     const double rate_limit;
-    Trajectories::Rows slipped;
+    Trajectories::Rows slipped, turn_position, turn_velocity;
+    std::vector<mask> rising;  // lanes in which the velocity of a block rises at the start of the piece
+    std::vector<bool> turns;   // blocks of which the maxima of the velocity are needed
     vec target{}, count{}, unit_start{}, unit_count{};
     mask accumulating{};
     int member[LANES] = {}, next_time[LANES] = {};
@@ -53,6 +76,7 @@ class Ensemble : public TrajectoryLanes {
     Outcome *out = nullptr;
     const std::vector<double> *times = nullptr;
     const Clouds *clouds = nullptr;
+    Maxima *maxima = nullptr;
 
     // Store the next state of a lane at the k-th time.
     void aim(int lane, int k) {
@@ -61,7 +85,7 @@ class Ensemble : public TrajectoryLanes {
     }
 
     // Integrate every lane to its next event, or to the end of its series, and compare returns with the clouds.
-    void move(const std::vector<int> &returns, const std::vector<int> &section) {
+    void move(const std::vector<Target> &targets) {
         for (int i = 0; i < blocks; i++) slipped[i] = state.slip[i];
         mask resting;
         const vec reach = expand(0, resting);
@@ -69,6 +93,8 @@ class Ensemble : public TrajectoryLanes {
         search.find(series, state, reach, active);
         const vec length = search.time;
         sample(length);
+        for (int i = 0; i < blocks; i++)
+            if (turns[i]) turn(i, length, targets);
         const mask ended = active & (until(Trajectories::splat(times->back())) <= length);
         if (any(ended)) {
             clock = select(ended, Trajectories::splat(times->back()), clock);
@@ -76,14 +102,49 @@ class Ensemble : public TrajectoryLanes {
         }
         advance(length, active);
         const mask event = active & search.found;
-        if (!any(event)) return;
-        change_due(event, [this](int i, mask where) { change(i, where); });
-        settle_events(event);
-        for (size_t k = 0; k < section.size(); k++) {
-            const int i = section[k];
-            visit(int(k), returns[k], int(section.size()),
-                  event & active & (slipped[i] != 0.0) & (state.slip[i] == 0.0));
+        if (any(event)) {
+            change_due(event, [this](int i, mask where) { change(i, where); });
+            settle_events(event);
         }
+        for (int k = 0; k < int(targets.size()); k++) {
+            const int i = targets[k].block;
+            if (targets[k].section == EVERYWHERE) visit(k, targets, active, state.position, state.velocity);
+            if (targets[k].section == STOPS && any(event))
+                visit(k, targets, event & active & (slipped[i] != 0.0) & (state.slip[i] == 0.0), state.position,
+                      state.velocity);
+        }
+    }
+
+    // Find where the velocity of block i has a maximum in the present pieces, and compare the states there with clouds.
+    // Whether it rises is carried over from piece to piece, so that rounding cannot hide a maximum between two pieces.
+    void turn(int i, vec length, const std::vector<Target> &targets) {
+        const mask rises = series.acceleration(i, length) > 0.0;
+        mask top = active & (state.slip[i] != 0.0) & rising[i] & ~rises;
+        rising[i] = rises & (state.slip[i] != 0.0);
+        if (!any(top)) return;
+        vec at{};
+        for (int lane = 0; lane < LANES; lane++) {
+            if (!top[lane]) continue;
+            polynomial.degree = Trajectories::ORDER - 1;
+            for (int k = 0; k < Trajectories::ORDER; k++)
+                polynomial.coefficient[k] = (k + 1) * series.velocity[size_t(k + 1) * blocks + i][lane];
+            at[lane] = polynomial.coefficient[0] > 0.0 ? std::max(polynomial.first_root(length[lane]), 0.0) : 0.0;
+        }
+        top &= at <= until(Trajectories::splat(times->back()));
+        for (int j = 0; j < blocks; j++) {
+            turn_position[j] = series.value(series.position, j, at);
+            turn_velocity[j] = series.value(series.velocity, j, at);
+        }
+        for (int lane = 0; maxima && lane < LANES; lane++) {
+            if (!top[lane] || clock[lane] + at[lane] < maxima->from) continue;
+            maxima->rows.push_back(clock[lane] + (clock_rest[lane] + at[lane]));
+            maxima->rows.push_back(i + 1);
+            for (int j = 0; j < blocks; j++) maxima->rows.push_back(turn_position[j][lane]);
+            for (int j = 0; j < blocks; j++) maxima->rows.push_back(turn_velocity[j][lane]);
+        }
+        for (int k = 0; k < int(targets.size()); k++)
+            if (targets[k].section == MAXIMA && targets[k].block == i)
+                visit(k, targets, active & top, turn_position, turn_velocity);
     }
 
     // Store the states at the times that lie within the present pieces.
@@ -129,18 +190,19 @@ class Ensemble : public TrajectoryLanes {
         settle(where, [this](int i, mask own) { change(i, own); }, [this] { return ~accumulating; });
     }
 
-    // Compare the states of some lanes with a cloud; a lane is finished after enough successive returns near it.
-    void visit(int cloud, int returns, int clouds_in_all, mask where) {
+    // Compare the states of some lanes with a cloud; a lane is finished after enough successive states near it.
+    void visit(int cloud, const std::vector<Target> &targets, mask where, const Trajectories::Rows &position,
+               const Trajectories::Rows &velocity) {
         std::vector<double> point(2 * blocks);
         for (int lane = 0; lane < LANES; lane++) {
             if (!where[lane]) continue;
             for (int i = 0; i < blocks; i++) {
-                point[i] = state.position[i][lane];
-                point[blocks + i] = state.velocity[i][lane];
+                point[i] = position[i][lane];
+                point[blocks + i] = velocity[i][lane];
             }
-            int &near = streak[size_t(lane) * clouds_in_all + cloud];
+            int &near = streak[size_t(lane) * targets.size() + cloud];
             near = clouds->is_near(cloud, point.data()) ? near + 1 : 0;
-            if (near < returns) continue;
+            if (near < targets[cloud].returns) continue;
             out->label[member[lane]] = cloud;
             mask own{};
             own[lane] = -1;

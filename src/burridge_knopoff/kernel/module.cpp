@@ -486,7 +486,7 @@ NB_MODULE(_core, m) {
                 Outcome out(int(position.shape(0)), ensemble.model.springs.blocks, int(times.size()), events);
                 {
                     const Unlocked call;
-                    ensemble.run(position.data(), velocity.data(), stuck.data(), times, out, nullptr, {}, {});
+                    ensemble.run(position.data(), velocity.data(), stuck.data(), times, out);
                 }
                 return outcome(out);
             },
@@ -495,13 +495,16 @@ NB_MODULE(_core, m) {
         .def(
             "label",
             [](Ensemble &ensemble, Table position, Table velocity, Array2<bool> stuck, const Clouds &clouds,
-               std::vector<int> returns, std::vector<int> section, double end) {
+               std::vector<int> returns, std::vector<int> block, std::vector<int> section, double end) {
                 check_shape(ensemble, position, velocity, stuck);
+                std::vector<Target> targets;
+                for (size_t k = 0; k < block.size(); k++)
+                    targets.push_back({block[k], Section(section[k]), returns[k]});
                 const size_t n = position.shape(0), blocks = ensemble.model.springs.blocks;
                 Outcome out(int(n), int(blocks), 1, 0);
                 {
                     const Unlocked call;
-                    ensemble.run(position.data(), velocity.data(), stuck.data(), {end}, out, &clouds, returns, section);
+                    ensemble.run(position.data(), velocity.data(), stuck.data(), {end}, out, &clouds, targets);
                 }
                 std::vector<double> last(n * 2 * blocks);
                 for (size_t k = 0; k < n; k++) {
@@ -511,6 +514,26 @@ NB_MODULE(_core, m) {
                 return nb::make_tuple(array<int32_t>(out.label, {n}), numbers(out.end, {n}),
                                       numbers(last, {n, 2 * blocks}));
             },
-            "position"_a, "velocity"_a, "stuck"_a, "clouds"_a, "returns"_a, "section"_a, "end"_a,
-            "The cloud that each state reaches, -1 for none, the end times, and the states at the end.");
+            "position"_a, "velocity"_a, "stuck"_a, "clouds"_a, "returns"_a, "block"_a, "section"_a, "end"_a,
+            "The cloud that each state reaches, -1 for none, the end times, and the states at the end.\n\n"
+            "block : of the section of each cloud, from 0; section : its stops 0, maxima of its velocity 1, everywhere "
+            "2")
+        .def(
+            "maxima",
+            [](Ensemble &ensemble, Table position, Table velocity, Array2<bool> stuck, double begin, double end) {
+                check_shape(ensemble, position, velocity, stuck);
+                if (position.shape(0) != 1) throw std::invalid_argument("position: expected one state");
+                const int blocks = ensemble.model.springs.blocks;
+                Outcome out(1, blocks, 1, 0);
+                Maxima maxima{begin, {}};
+                {
+                    const Unlocked call;
+                    ensemble.run(position.data(), velocity.data(), stuck.data(), {end}, out, nullptr, {}, &maxima);
+                }
+                const size_t width = 2 + 2 * blocks;
+                return numbers(maxima.rows, {maxima.rows.size() / width, width});
+            },
+            "position"_a, "velocity"_a, "stuck"_a, "begin"_a, "end"_a,
+            "The maxima of the velocity of every block of one trajectory between two times, rows of time, block "
+            "(from 1), positions and velocities.");
 }

@@ -24,7 +24,7 @@ class MotionKind(IntEnum):
     PERIODIC motion repeats within `MotionSettings.longest_period`. Other regular motion is QUASIPERIODIC, even if it is
     locked with a longer period. In SYNCHRONIZED motion, which is periodic, and in SYNCHRONIZED_CHAOS the end blocks
     move together. TRANSIENT_CHAOS describes sets, not runs: chaos that an ensemble shows to end, or does not show to
-    last.
+    last. SLIDING is uniform sliding.
 
     >>> from burridge_knopoff import MotionKind
     >>> MotionKind(4).words, MotionKind.CHAOTIC.value
@@ -38,10 +38,13 @@ class MotionKind(IntEnum):
     CHAOTIC = 3
     TRANSIENT_CHAOS = 4
     SYNCHRONIZED_CHAOS = 5
+    SLIDING = 6
 
     @property
     def words(self) -> str:
         """The kind in words, for a sentence."""
+        if self == MotionKind.SLIDING:
+            return "uniform sliding"
         return self.name.lower().replace("_", " ")
 
 
@@ -146,11 +149,14 @@ def motion_of_completed_run(run: Mapping[str, Any], mean_distance: float, settin
       small. If the end blocks are synchronized, which is rare on a torus, the next exponent must be 0 within one
       standard error.
     - Periodic motion is synchronized, or periodic up to the longest period and quasiperiodic beyond.
-    - All other motion is undetermined. This includes a largest exponent above `zero_exponent` but within its error, and
-      attracting uniform sliding, which has no exponent 0 and whose section points are rounding.
+    - A largest exponent that is certain to be negative is that of uniform sliding, the only equilibrium, whose section
+      points are rounding.
+    - All other motion is undetermined. This includes a largest exponent above `zero_exponent` but within its error.
     """
     exponents = run["lyapunov_exponent"], run["lyapunov_error"]
-    return motion_of_repetition(repetition_of(run, settings), mean_distance, *exponents, settings)
+    motion = motion_of_repetition(repetition_of(run, settings), mean_distance, *exponents, settings)
+    # A run that stops within its window has not reached uniform sliding.
+    return Motion(MotionKind.UNDETERMINED) if motion.kind == MotionKind.SLIDING and len(run["event_time"]) else motion
 
 
 def motion_of_repetition(
@@ -161,7 +167,7 @@ def motion_of_repetition(
     if repetition.divergence <= (DIVERGENCE if is_zero else 1.0):
         return motion_from_period(repetition.points, repetition.period, mean_distance, exponent, error, settings)
     motion = motion_from_period(0, math.nan, mean_distance, exponent, error, settings)
-    return motion if motion.kind in CHAOS else Motion(MotionKind.UNDETERMINED)
+    return motion if motion.kind in (*CHAOS, MotionKind.SLIDING) else Motion(MotionKind.UNDETERMINED)
 
 
 def motion_from_period(
@@ -178,7 +184,7 @@ def motion_from_period(
     """
     error = _fill_unknown_errors(exponent, error)
     if _is_at_rest(exponent, error, settings):
-        return Motion(MotionKind.UNDETERMINED)
+        return Motion(MotionKind.SLIDING)
     positive = _is_positive(exponent, error, settings)
     if points:
         return Motion(periodic_orbit_kind(mean_distance, period, settings), points, period, positive)

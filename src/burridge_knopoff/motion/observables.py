@@ -8,15 +8,27 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.motion.kind import CHAOS, Motion, MotionKind, motion_of_completed_run, synchronization_distance
+from burridge_knopoff.motion.kind import (
+    CHAOS,
+    Motion,
+    MotionKind,
+    motion_of_completed_run,
+    periodic_orbit_kind,
+    synchronization_distance,
+)
+from burridge_knopoff.motion.period import REPETITIONS, orbit_length
 from burridge_knopoff.motion.phase_locking import recurrence
-from burridge_knopoff.motion.section_returns import Returns, returns_of, state_of
+from burridge_knopoff.motion.section_returns import Returns, ReturnSection, returns_of, returns_without_stops, state_of
 from burridge_knopoff.motion.set_distance import SPACINGS, is_near, spacing_of
 from burridge_knopoff.motion.settings import EXPONENTS, MotionSettings
+from burridge_knopoff.motion.uniform_sliding import eigenvalues, sliding_state
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 
 BATCHES = 6
+
+# Two periods of one motion, by the section of a run and by the maxima of a velocity, differ relatively by less.
+SAME_PERIOD = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,9 +40,10 @@ class SteadyMotion:
     kind, section_period, period : see `Motion`; if the motion is locked, `period` is that of the periodic orbit
     exponent : Lyapunov exponents in descending order
 
-    returns, mirror_returns, spacing, block, mirror_block : see `Returns`
+    returns, mirror_returns, spacing, block, mirror_block, section : see `Returns`
     recurrence : see `phase_locking.recurrence`
     left_for : a state of the later motion if this motion proved to be a transient, otherwise None
+    return_rate : number of returns per unit of time
 
     >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
@@ -55,6 +68,8 @@ class SteadyMotion:
     period: float = math.nan
     recurrence: float = 0.0
     left_for: ChainState | None = None
+    section: ReturnSection = ReturnSection.STOPS
+    return_rate: float = math.nan
 
     def __post_init__(self) -> None:
         """Sort the exponents, which may come from several measurements."""
@@ -137,17 +152,21 @@ def observe(
     mean_distance = trajectory.mean_distance if mean_distance is None else mean_distance
     if trajectory.status != "completed":
         return None
-    block = trajectory.event_block
+    block, times = trajectory.event_block, trajectory.event_time
 
     def states(chosen: np.ndarray) -> np.ndarray:
         position = trajectory.event_position[chosen] - model.sliding_offset
         return np.concatenate([position, trajectory.event_velocity[chosen]], axis=1)
 
-    section = returns_of(model, window, block, states)
+    section = returns_of(model, window, times, block, states)
+    if section is None and not len(block):
+        section = returns_without_stops(model, start, transient, window)
     if section is None:
         return None
     mean = synchronization_distance(mean_distance, model.chain.is_mirror_symmetric)
     motion = motion_of_completed_run(vars(trajectory), mean, settings)
+    if section.section == ReturnSection.MAXIMA:
+        motion = _without_stops(motion, section, mean, settings)
     return SteadyMotion(
         returns=section.returns,
         mirror_returns=section.mirror_returns,
@@ -161,7 +180,40 @@ def observe(
         exponent=trajectory.lyapunov_exponent,
         block=section.block,
         mirror_block=section.mirror_block,
-        recurrence=recurrence(trajectory.event_time[block == section.block], section.returns),
+        recurrence=recurrence(section.times, section.returns),
+        section=section.section,
+        return_rate=len(section.returns) / window,
+    )
+
+
+def _without_stops(motion: Motion, section: Returns, mean: float, settings: MotionSettings) -> Motion:
+    """Return the kind of a motion without stops that repeats; the section of a run does not show it.
+
+    W, the sum of all x_i, is rounding if blocks move in opposite phases.
+    """
+    longest = len(section.returns) // REPETITIONS
+    length = orbit_length(section.returns, settings.period_tolerance, longest + 1)
+    if motion.kind in CHAOS or length > longest:
+        return motion
+    period = float(section.times[-1] - section.times[-1 - length])
+    points = motion.section_period if math.isclose(motion.period, period, rel_tol=SAME_PERIOD) else 0
+    return Motion(periodic_orbit_kind(mean, period, settings), points, period)
+
+
+def sliding_motion(model: Model) -> SteadyMotion:
+    """Return uniform sliding as a motion; its exponents are the real parts of the eigenvalues of its Jacobian."""
+    state = sliding_state(model)[None]
+    return SteadyMotion(
+        returns=state,
+        mirror_returns=state if model.chain.is_mirror_symmetric else state[:0],
+        spacing=0.0,
+        mean_distance=0.0,
+        mean_distance_error=0.0,
+        stop_rate=np.zeros(model.blocks),
+        kind=MotionKind.SLIDING,
+        section_period=0,
+        exponent=-np.sort(-eigenvalues(model).real)[:EXPONENTS],
+        section=ReturnSection.SLIDING,
     )
 
 
@@ -174,7 +226,13 @@ def is_on_attractor(section: Returns, attractor: SteadyMotion, resolution: float
     resolution : distance below which attractors are not distinguished
     tolerance : distance within which the returns of periodic orbits repeat
     """
+    if attractor.section == ReturnSection.SLIDING:
+        # A motion that spirals inward is closer in the second half of its window.
+        latest = section.returns[len(section.returns) // 2 :]
+        return section.section != ReturnSection.STOPS and is_near(latest, attractor.returns, resolution)
     chaotic = attractor.kind in CHAOS and attractor.spacing > tolerance
+    if section.section != attractor.section:
+        return False
     if section.block != attractor.block or (section.is_periodic(tolerance) and chaotic):
         return False
     return is_near(section.returns, attractor.returns, max(resolution, SPACINGS * attractor.spacing))

@@ -16,7 +16,6 @@ from burridge_knopoff.report.numbers import format_measured, json_number
 from burridge_knopoff.running.status import STATUS_WORDS, Status
 from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.study import Study
-from burridge_knopoff.summaries.equilibrium import SLIDING, is_sliding_attracting
 
 
 @dataclass(frozen=True)
@@ -129,9 +128,7 @@ def unclear_runs(commands: Commands, mean_distance: xarray.Dataset, agreement: x
                     "command": commands.snakemake(law, initial, a),
                 }
                 if status == Status.COMPLETED:
-                    sliding = is_sliding_attracting(commands.study.model(law, commands.study.grid[a]))
-                    what = f"kind of motion undetermined{f': {SLIDING}' if sliding else ''}"
-                    undetermined.append({**run, "what": what})
+                    undetermined.append({**run, "what": "kind of motion undetermined"})
                 else:
                     failed.append({**run, "what": f"did not complete: {STATUS_WORDS[status]}"})
     return [*failed, *undetermined]

@@ -97,7 +97,7 @@ def _at_all_values(continuation: Continuation, least_lifetime: float, refine: Re
 
 def _with_names(data: xarray.Dataset) -> xarray.Dataset:
     """Return the attractors with the names of their branches."""
-    names = name_branches(*(data[name].values for name in ("branch", "symmetry", "stop_rate")))
+    names = name_branches(*(data[name].values for name in ("branch", "symmetry", "stop_rate", "kind")))
     return data.assign(xarray_variables(NAMES, names))
 
 

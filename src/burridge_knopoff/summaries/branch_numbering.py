@@ -74,7 +74,7 @@ def merge(
     coordinates["law"] = axes(law=[part.attrs["law"] for part in parts])["law"]
     attributes = {key: value for key, value in parts[0].attrs.items() if key != "law"}
     whole = {name: replace(item, dimensions=("law", *item.dimensions)) for name, item in variables.items()} | NAMES
-    values.update(name_branches(*(values[name] for name in ("branch", "symmetry", "stop_rate"))))
+    values.update(name_branches(*(values[name] for name in ("branch", "symmetry", "stop_rate", "kind"))))
     return summary(title, whole, values, coordinates, attributes, module=__name__)
 
 

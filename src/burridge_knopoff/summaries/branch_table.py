@@ -56,8 +56,8 @@ def _exceptions(part: xarray.Dataset) -> str:
     ]
     sliding = part["sliding_attracts"].values == 1
     for where, problem in (
-        ((part["branch"].values.max(axis=1) < 0) & ~sliding, "no attractor"),
-        (sliding, "uniform sliding, which has no stops and is not searched for, attracts"),
+        (part["branch"].values.max(axis=1) < 0, "no attractor"),
+        (sliding, "uniform sliding attracts"),
     ):
         if where.any():
             words.append(f"{problem} at a = {', '.join(f'{value:g}' for value in part['a'].values[where])}")

@@ -11,7 +11,7 @@ from burridge_knopoff.dataset.columns import empty_columns
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
 from burridge_knopoff.model.parameters import plain_name
 from burridge_knopoff.model.sampling import fraction_interval
-from burridge_knopoff.summaries.equilibrium import is_sliding_attracting
+from burridge_knopoff.motion.uniform_sliding import is_sliding_attracting
 
 
 def branch_variables(parameter: str) -> dict[str, Variable]:
@@ -57,7 +57,7 @@ def branch_variables(parameter: str) -> dict[str, Variable]:
         "sliding_attracts": Variable(
             (dimension,),
             "i1",
-            "uniform sliding attracts: whether uniform sliding, which has no stops and is not searched for, attracts",
+            "uniform sliding attracts: whether small perturbations of uniform sliding decay",
             YES_OR_NO,
         ),
     }

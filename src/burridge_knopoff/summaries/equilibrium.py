@@ -15,13 +15,14 @@ from dataclasses import replace
 
 import numpy as np
 import xarray
-from scipy.linalg import eigvalsh, eigvalsh_tridiagonal, solve, solveh_banded
+from scipy.linalg import solve, solveh_banded
 
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.laws.blend import mirror_law
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.motion.uniform_sliding import DIGITS, eigenvalues, round_digits
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.summaries.sentences import lines_of, values_where
 
@@ -34,16 +35,10 @@ DURATION = 20.0
 # Logarithm of the largest growth of a perturbation in that time; if growth is faster, the time is shorter.
 LARGEST_GROWTH = 20.0
 
-#: Message about a model for which no other attractor is found.
-SLIDING = "uniform sliding attracts here; it has no stops and is not searched for"
-
 PARTS = ("real", "imaginary")
 
 #: Largest number of blocks: the modes of larger chains take hours, and their matrices need more memory than there is.
 MAX_BLOCKS = 1024
-
-# Significant digits of results of LAPACK, whose last bits depend on the machine.
-DIGITS = 12
 
 _CURVE = ("law", "a")
 VARIABLES = {
@@ -123,46 +118,9 @@ def sliding_position(model: Model) -> np.ndarray:
     load = -model.sliding_friction * chain.thresholds
     # SciPy rejects a band matrix of a single number.
     if chain.ends == "ring" or chain.blocks == 1 or chain.is_network:
-        return np.array([_round(value) for value in solve(chain.stiffness, load, assume_a="pos")])
+        return np.array([round_digits(value) for value in solve(chain.stiffness, load, assume_a="pos")])
     bands = np.stack([np.append(0.0, np.diag(chain.stiffness, 1)), np.diag(chain.stiffness)])
     return solveh_banded(bands, load)
-
-
-def weakening(model: Model) -> np.ndarray:
-    """Return g = −threshold·dΦ/dU'/m of each block at the velocity of the driver, shape (blocks,)."""
-    return -model.chain.thresholds * float(model.law.slope(model.v)) / model.chain.masses
-
-
-def eigenvalues(model: Model) -> np.ndarray:
-    """Return the eigenvalues of the Jacobian at uniform sliding, complex, shape (2 blocks,).
-
-    They are ordered from the slowest oscillation to the fastest, with the positive imaginary part of a pair first;
-    non-oscillating ones precede these in order of decreasing growth rate.
-    """
-    stiffness, rates, root = model.chain.stiffness, weakening(model), np.sqrt(model.chain.masses)
-    if model.chain.is_damped or (rates != rates[0]).any():
-        blocks, masses = model.blocks, model.chain.masses[:, None]
-        damped = np.diag(rates) - model.chain.damping_matrix / masses
-        jacobian = np.block([[np.zeros((blocks, blocks)), np.eye(blocks)], [-stiffness / masses, damped]])
-        spectrum = [complex(_round(value.real), _round(value.imag)) for value in np.linalg.eigvals(jacobian)]
-        return np.array(sorted(spectrum, key=lambda value: (abs(value.imag), value.imag < 0.0, -value.real)))
-    half = 0.5 * rates[0]
-    # The symmetric matrix M^(−1/2) K M^(−1/2) has the eigenvalues of M⁻¹K.
-    stiffness = stiffness / np.outer(root, root)
-    if model.chain.ends == "ring" or model.chain.is_network:
-        kappa = eigvalsh(stiffness)
-    else:
-        kappa = eigvalsh_tridiagonal(np.diag(stiffness), np.diag(stiffness, 1), lapack_driver="sterf")
-    square = kappa - half**2
-    shift = np.array([_round(value) for value in np.sqrt(np.abs(square))])
-    # A mode that does not oscillate has two real eigenvalues.
-    shift = np.where(square > 0.0, 1j, 1.0) * shift
-    return (half + shift[:, None] * np.array([1.0, -1.0])).ravel()
-
-
-def is_sliding_attracting(model: Model) -> bool:
-    """Return whether uniform sliding attracts: every small perturbation decays."""
-    return bool((eigenvalues(model).real < 0.0).all())
 
 
 def simulate_sliding(model: Model, position: np.ndarray) -> tuple[float, float]:
@@ -182,11 +140,6 @@ def simulate_sliding(model: Model, position: np.ndarray) -> tuple[float, float]:
     rate = round(math.log(float(moduli.max())) / duration, DIGITS)
     # Adding 0 turns -0.0 into 0.0.
     return float(np.abs(end.position).max()), rate + 0.0
-
-
-def _round(value: float) -> float:
-    """Return a number rounded to the digits on which all machines agree."""
-    return float(f"{value:.{DIGITS - 1}e}")
 
 
 def digest(data: xarray.Dataset) -> str:

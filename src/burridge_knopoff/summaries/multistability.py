@@ -14,7 +14,6 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.summaries.attractors import one_law
 from burridge_knopoff.summaries.branch_numbering import branch_numbers, merge
-from burridge_knopoff.summaries.equilibrium import SLIDING, is_sliding_attracting
 
 
 def coexisting_attractors(
@@ -33,12 +32,10 @@ def coexisting_attractors(
     """
     continuation = continue_attractors([model], settings, motion, starts=starts, start=start)
     if not continuation.attractors[0]:
-        if is_sliding_attracting(model):
-            raise ValueError(f"a: got {model.a!r}, at which no attractor was found; {SLIDING}")
         raise ValueError(
             f"transient: got {settings.transient:g}, at which no attractor was found at a = {model.a!r}; expected a "
             f"longer one, or more than window {settings.window:g}, time_limit {settings.time_limit:g}, samples "
-            f"{settings.samples} (at a = 0 there is no attractor)"
+            f"{settings.samples} (if friction does not depend on speed there is no attractor)"
         )
     parts = [one_law(continuation, starts, settings, motion, start)]
     dataset = merge(parts, branch_numbers(parts, [model], settings))
