@@ -28,14 +28,15 @@ def test_events_before_the_beginning_are_excluded():
     assert np.array_equal(late.interval, whole.interval[whole.time >= 100.0], equal_nan=True)
 
 
-@pytest.mark.parametrize("blocks", [5, 30])
-def test_consecutive_runs_have_the_catalogue_of_the_whole_run(blocks):
+@pytest.mark.parametrize("loading", ["steady", "quasistatic"])
+@pytest.mark.parametrize("blocks", [5, 23, 24])
+def test_consecutive_runs_have_the_catalogue_of_the_whole_run(blocks, loading):
     model = Model(Chain(blocks, coupling=20.0, pulling=1.0), law_of("carlson_langer", 2.0), 0.01)
-    whole = record_events(model, at_rest(model), 300.0)
+    whole = record_events(model, at_rest(model), 300.0, profiles=True, loading=loading)
     parts, at = [], at_rest(model)
-    # The first run ends within an event.
+    # Under steady loading the first run ends within an event.
     for end in (float(whole.time[10] + 0.3 * whole.duration[10]), 177.7, 300.0):
-        parts.append(record_events(model, at, end))
+        parts.append(record_events(model, at, end, profiles=True, loading=loading))
         at = parts[-1].final
     time = np.concatenate([part.time for part in parts])
     order = np.argsort(time, kind="stable")
@@ -43,6 +44,9 @@ def test_consecutive_runs_have_the_catalogue_of_the_whole_run(blocks):
     for name in ("duration", "epicentre", "moment", "peak_velocity", "energy_released", "interval"):
         values = np.concatenate([getattr(part, name) for part in parts])[order]
         assert np.allclose(values, getattr(whole, name), rtol=1e-12, atol=1e-15, equal_nan=True), name
+    for name in ("slip_block", "slip", "slip_onset"):
+        profiles = [column for part in parts for column in np.split(getattr(part, name), part.slip_end[:-1])]
+        assert np.array_equal(np.concatenate([profiles[k] for k in order]), getattr(whole, name)), name
 
 
 @pytest.mark.parametrize("ends", ["open", "ring"])

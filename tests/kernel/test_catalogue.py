@@ -14,7 +14,10 @@ from burridge_knopoff.values import MOST_NUMBERS
 
 
 def record_catalogue(model, start, end, groups=None, stops=(), loading="steady"):
-    """Return the catalogue of a run, in the order of the events, its profiles, and the solver at its end."""
+    """Return the catalogue of a run, in the order of the events, the solver at its end, and the profiles.
+
+    The profiles are in the order in which the events end.
+    """
     catalogue = Catalogue(model.blocks, 0.0, True, MOST_NUMBERS)
     runner = Runner(model, groups=groups, keep_events=True, catalogue=catalogue, loading=loading)
     runner.begin(start)
@@ -22,7 +25,7 @@ def record_catalogue(model, start, end, groups=None, stops=(), loading="steady")
         assert runner.run(time) == Status.COMPLETED
     table = catalogue.take()
     order = np.argsort(table["time"], kind="stable")
-    profiles = [table.pop(name) for name in ("slip_end", "slip_block", "slip")]
+    profiles = [table.pop(name) for name in ("slip_end", "slip_block", "slip", "slip_onset")]
     return {name: column[order] for name, column in table.items()}, runner, profiles
 
 
@@ -82,7 +85,7 @@ def test_forces_and_displacements_balance(law, groups):
     model = Model(Chain(12, coupling=5.0, pulling=1.0), law_of(law, 1.0), 0.02)
     start = at_rest(model)
     end = last_rest(model, start, 120.0)
-    table, runner, (ends, block, slip) = record_catalogue(model, start, end, groups)
+    table, runner, (ends, block, slip, _) = record_catalogue(model, start, end, groups)
     assert len(ends) == len(table["time"]) > 15
     moved = runner.state().position - start.position + model.v * end
     total = np.bincount(block - 1, slip, model.blocks)
@@ -133,6 +136,43 @@ def test_groups_and_the_chain_as_a_whole_have_the_same_events():
     assert len(grouped["time"]) >= 8
     for name, values in grouped.items():
         assert np.allclose(values[:8], ungrouped[name][:8], rtol=1e-7, atol=1e-9, equal_nan=True), name
+
+
+def events_of_starts_and_stops(model, log):
+    """Return {block: time of its first start} of each event that ends, from all starts and stops of a run."""
+    springs = model.chain.stiffness != 0.0
+    event_of, events = {}, []
+    for time, block, kind in zip(*log, strict=True):
+        if kind == 1:
+            beside = {id(event_of[k]): event_of[k] for k in np.flatnonzero(springs[block]) if k in event_of}
+            event = {"starts": {block: time}, "slipping": 1}
+            for other in beside.values():
+                event["slipping"] += other["slipping"]
+                for k, first in other["starts"].items():
+                    event["starts"][k] = min(first, event["starts"].get(k, first))
+            event_of |= {k: event for k, old in event_of.items() if id(old) in beside} | {block: event}
+        elif block in event_of:
+            event = event_of.pop(block)
+            event["slipping"] -= 1
+            if not event["slipping"]:
+                events.append(event["starts"])
+    return events
+
+
+@pytest.mark.parametrize("loading", ["steady", "quasistatic"])
+@pytest.mark.parametrize("blocks", [23, 24])
+@pytest.mark.parametrize("groups", [False, True])
+def test_onsets_are_those_of_the_starts(blocks, groups, loading):
+    model = Model(Chain(blocks, coupling=9.0, pulling=1.0), law_of("carlson_langer", 3.0), 0.02)
+    _, runner, (ends, block, _, onset) = record_catalogue(model, at_rest(model), 250.0, groups, loading=loading)
+    events = events_of_starts_and_stops(model, runner.events())
+    assert len(events) == len(ends) > 100
+    for part, delays, starts in zip(np.split(block - 1, ends[:-1]), np.split(onset, ends[:-1]), events, strict=True):
+        assert part.tolist() == sorted(starts)
+        expected = [starts[k] - min(starts.values()) for k in part]
+        np.testing.assert_allclose(delays, expected, rtol=0.0, atol=1e-12)
+    # Some blocks slip twice in an event.
+    assert (runner.events()[2] == 1).sum() > len(block) + 10
 
 
 def test_connection_decides():

@@ -138,7 +138,7 @@ def test_mirror_images_start_together(groups):
 def test_forces_and_displacements_balance(groups):
     model = Model(Chain(12, coupling=5.0, pulling=1.0), law_of("carlson_langer", 1.0), 0.02)
     start = at_rest(model)
-    table, runner, (_, block, slip) = record_catalogue(model, start, 200.0, groups, loading="quasistatic")
+    table, runner, (_, block, slip, _) = record_catalogue(model, start, 200.0, groups, loading="quasistatic")
     moved = runner.state().position - start.position + model.v * 200.0
     assert len(table["time"]) > 20
     assert np.allclose(np.bincount(block - 1, slip, 12), moved, rtol=0.0, atol=1e-12)

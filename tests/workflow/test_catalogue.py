@@ -92,6 +92,10 @@ def test_the_columns_are_consistent(study):
     assert events.sizes["slip"] == ends[-1]
     slips = np.split(events["slip_distance"].values, ends[:-1])
     blocks = np.split(events["slip_block"].values, ends[:-1])
+    # The block that starts first has no delay, and no block starts after the event.
+    for part, onset, k in zip(blocks, np.split(events["slip_onset"].values, ends[:-1]), range(len(ends)), strict=True):
+        assert onset[part == events["epicentre"].values[k]] == onset.min() == 0.0
+        assert onset.max() < events["duration"].values[k]
     np.testing.assert_allclose([part.sum() for part in slips], events["moment"], rtol=1e-12)
     np.testing.assert_allclose(np.exp(events["magnitude"]), events["moment"], rtol=1e-12)
     # In a row, connected slips have no gaps.

@@ -20,6 +20,9 @@ from burridge_knopoff.values import MOST_NUMBERS, instance_of
 MOST_EVENTS = MOST_NUMBERS / 10
 TIMES = Number(-1e15, 1e15)
 
+#: Columns with an entry for each block of each event.
+PROFILES = ("slip_block", "slip", "slip_onset")
+
 #: Limit on a fixed step times the highest frequency: a tenth of the shortest period. It is higher than the limit of
 #: other runs, so that the effect of the step on a catalogue can be studied.
 LONGEST_STEP = 0.2 * math.pi
@@ -43,8 +46,8 @@ class SlipEvents:
     energy_released : work of the springs on the blocks, which friction and dashpots dissipate
     energy_damped : energy dissipated by the dashpots at slipping blocks, ∫ Σ c_ij (U_j' − U_i')² + Σ c_i (v − U_i')² dτ
     interval : τ since the start of the previous event in which the epicentre slipped; NaN if there is none
-    slip_block, slip : with profiles, the blocks of all events and the slip of each; slip_end : end of each event in
-        these arrays
+    slip_block, slip, slip_onset : with profiles, the blocks of all events, the slip of each, and the slip time from the
+        first start of the event to the first start of the block; slip_end : end of each event in these arrays
     status : how the run ended
     final : the state at the end, from which another run continues, with the events that have not ended
 
@@ -75,6 +78,7 @@ class SlipEvents:
     slip_end: np.ndarray = field(repr=False)
     slip_block: np.ndarray = field(repr=False)
     slip: np.ndarray = field(repr=False)
+    slip_onset: np.ndarray = field(repr=False)
     status: Status
     final: ChainState = field(repr=False)
 
@@ -100,7 +104,7 @@ def record_events(
 
     state, end : state at the start of the run, and τ of its end
     begin : earlier events are omitted, by default none; they still count for the intervals
-    profiles : whether the slip of every block is stored
+    profiles : whether the slip of every block, and when it starts, is stored
     loading : steady: the driver moves at velocity v | quasistatic: the driver stops while any block slips; when all
         stick or creep it advances to the next slip. In the second case τ is the displacement of the driver divided by
         v, and the slip clock runs while blocks slip. An overdamped slip does not end: it creeps, at the kinetic
@@ -137,12 +141,14 @@ def record_events(
     status = runner.run(None if stepping else end)
     table = catalogue.take()
     order = np.lexsort((table["slip_time"], table["time"]))
-    ends, block, slip = (table.pop(name) for name in ("slip_end", "slip_block", "slip"))
+    ends, *profile = (table.pop(name) for name in ("slip_end", *PROFILES))
     for name in table:
         table[name] = table[name][order]
     if profiles:
         counts = table["blocks"]
         first = (ends - np.diff(ends, prepend=0))[order]
-        index = np.repeat(first - np.cumsum(counts) + counts, counts) + np.arange(len(slip))
-        ends, block, slip = np.cumsum(counts), block[index], slip[index]
-    return SlipEvents(**table, slip_end=ends, slip_block=block, slip=slip, status=status, final=runner.final(status))
+        ends = np.cumsum(counts)
+        index = np.repeat(first - ends + counts, counts) + np.arange(counts.sum())
+        profile = [column[index] for column in profile]
+    columns = dict(zip(PROFILES, profile, strict=True))
+    return SlipEvents(**table, slip_end=ends, **columns, status=status, final=runner.final(status))

@@ -42,7 +42,7 @@ class CatalogueSettings:
         "largest magnitude in the fit; default: the least frequent magnitude between `low` and the one that releases "
         "most moment",
     ] = None
-    profiles: Annotated[bool, TrueOrFalse(), "store the slip of every block of each event"] = False
+    profiles: Annotated[bool, TrueOrFalse(), "store the slip of every block of each event, and its onset"] = False
 
     def __post_init__(self) -> None:
         check_fields(self)

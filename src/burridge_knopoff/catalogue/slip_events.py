@@ -56,6 +56,9 @@ CATALOGUE_VARIABLES = {
 PROFILE_VARIABLES = {
     "slip_block": _V(("slip",), "i4", "block that slips"),
     "slip_distance": _V(("slip",), "f8", "slip of the block in the event"),
+    "slip_onset": _V(
+        ("slip",), "f8", "onset of slip: slip time from the first start of the event to the first start of the block"
+    ),
 }
 
 

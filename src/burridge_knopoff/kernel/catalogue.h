@@ -23,11 +23,26 @@ namespace bk {
 
 class Catalogue {
   public:
+    // A slip of a block in an event, from the slip clock at its start.
+    struct Slip {
+        int block;
+        double distance;
+        Clock begun;
+
+        template <class A>
+        void archive(A &values) {
+            values(block, distance, begun);
+        }
+        bool operator<(const Slip &other) const {
+            return std::pair(block, distance) < std::pair(other.block, other.distance);
+        }
+    };
+
     struct Event {
         Clock start, load;  // slip clock and loading clock at the first start; the same clock under steady loading
         int epicentre = 0, slipping = 0;
         double interval = 0.0, peak_velocity = 0.0, energy = 0.0, damped = 0.0;
-        std::vector<std::pair<int, double>> slips;  // block and slip
+        std::vector<Slip> slips;
         // The event into which this one was merged, −1 for none; the events that were merged into this one.
         int merged = -1;
         std::vector<int> absorbed;
@@ -47,10 +62,11 @@ class Catalogue {
         std::vector<double> time, slip_time, duration, moment, largest_slip, peak_velocity, stress_drop,
             energy_released, energy_damped, interval;
         std::vector<int> epicentre, first_block, last_block, blocks;
-        // With profiles, blocks and slips of successive events; those of event k end before slip_end[k].
+        // With profiles, blocks of successive events, their slips, and the slip time from the start of the event to
+        // their first starts; those of event k end before slip_end[k].
         std::vector<int64_t> slip_end;
         std::vector<int> slip_block;
-        std::vector<double> slip;
+        std::vector<double> slip, slip_onset;
     };
 
     const double from;
@@ -171,8 +187,8 @@ class Catalogue {
         Event &event = events[number];
         block.event = -1;
         block.last_event = number;
-        event.slips.emplace_back(
-            i, ((x - block.position) + v * block.begun.until(at)) + loading * block.loaded.until(load));
+        event.slips.push_back(
+            {i, ((x - block.position) + v * block.begun.until(at)) + loading * block.loaded.until(load), block.begun});
         if (--event.slipping > 0) return;
         finish(springs, number, at);
         for (int k : event.absorbed) release(k);
@@ -193,6 +209,7 @@ class Catalogue {
     std::vector<Block> of_block;
     std::vector<int> spare, blocks;  // free numbers of events; blocks of the event that ends
     std::vector<double> slip;        // slips of the blocks of the event that ends, 0 for other blocks
+    std::vector<Clock> begun;        // first starts of the blocks of the event that ends
     Polynomial polynomial;
 
     int find(int number) const {
@@ -256,9 +273,15 @@ class Catalogue {
         find_peak(event);
         std::sort(event.slips.begin(), event.slips.end());
         blocks.clear();
-        for (auto [i, far] : event.slips) {
-            if (blocks.empty() || blocks.back() != i) blocks.push_back(i);
-            slip[i] += far;
+        begun.clear();
+        for (const Slip &part : event.slips) {
+            if (blocks.empty() || blocks.back() != part.block) {
+                blocks.push_back(part.block);
+                begun.push_back(part.begun);
+            } else if (begun.back().until(part.begun) < 0.0) {
+                begun.back() = part.begun;
+            }
+            slip[part.block] += part.distance;
         }
         double moment = 0.0, largest = 0.0, drop = 0.0;
         for (int i : blocks) {
@@ -291,12 +314,14 @@ class Catalogue {
             table.energy_released.push_back(event.energy);
             table.energy_damped.push_back(event.damped);
             table.interval.push_back(event.interval);
-            for (int i : blocks) {
-                if (!profiles) break;
-                table.slip_block.push_back(i + 1);
-                table.slip.push_back(slip[i]);
+            if (profiles) {
+                for (int i : blocks) {
+                    table.slip_block.push_back(i + 1);
+                    table.slip.push_back(slip[i]);
+                }
+                for (const Clock &start : begun) table.slip_onset.push_back(event.start.until(start));
+                table.slip_end.push_back(int64_t(table.slip.size()));
             }
-            if (profiles) table.slip_end.push_back(int64_t(table.slip.size()));
         }
         for (int i : blocks) slip[i] = 0.0;
     }

@@ -371,6 +371,7 @@ NB_MODULE(_core, m) {
                 made["slip_end"] = taken(table.slip_end);
                 made["slip_block"] = taken(table.slip_block);
                 made["slip"] = taken(table.slip);
+                made["slip_onset"] = taken(table.slip_onset);
                 return made;
             },
             "The columns, with an entry for each event in the order in which events end, and the profiles; the "

@@ -140,7 +140,7 @@ def record_events(
     model : the model; state : its initial state, from `Model.begin` or the `final` of another run
     end : τ at the end of the run
     begin : events that begin earlier are left out, but count in the intervals; by default none is left out
-    profiles : keep the slip of every block of each event
+    profiles : keep the slip of every block of each event, and when it starts
     loading : steady: the driver always moves | quasistatic: the driver stops while any block slips; when all stick or
         creep it advances to the next slip. An overdamped slip does not end: it creeps, and its event goes on
     solver, step : see `Settings`
