@@ -97,6 +97,8 @@ class Ensemble : public TrajectoryLanes {
             if (turns[i]) turn(i, length, targets);
         const mask ended = active & (until(Trajectories::splat(times->back())) <= length);
         if (any(ended)) {
+            for (int k = 0; k < int(targets.size()); k++)
+                if (targets[k].section == EVERYWHERE) arrive(k, ended);
             clock = select(ended, Trajectories::splat(times->back()), clock);
             finish(ended, COMPLETED);
         }
@@ -207,6 +209,20 @@ class Ensemble : public TrajectoryLanes {
             mask own{};
             own[lane] = -1;
             finish(own, COMPLETED);
+        }
+    }
+
+    // Label the trajectories that end near an equilibrium, where a single piece may last until the end.
+    void arrive(int cloud, mask ended) {
+        const vec rest = until(Trajectories::splat(times->back()));
+        std::vector<double> point(2 * blocks);
+        for (int lane = 0; lane < LANES; lane++) {
+            if (!ended[lane]) continue;
+            for (int i = 0; i < blocks; i++) {
+                point[i] = series.value(series.position, i, rest)[lane];
+                point[blocks + i] = series.value(series.velocity, i, rest)[lane];
+            }
+            if (clouds->is_near(cloud, point.data())) out->label[member[lane]] = cloud;
         }
     }
 

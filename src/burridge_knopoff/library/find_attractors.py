@@ -47,9 +47,9 @@ def find_attractors(
     start : moving or tested, see `Model.begin`
 
     The indices have shape (samples + len(starts),), sampled states first; −1 if a state does not settle on a known
-    attractor. An attractor that no state reaches is not found. Motion without stops is not found either, since
-    attractors are identified by the states at the stops of the outermost block that stops regularly. Raises ValueError,
-    one line, for a wrong argument.
+    attractor. Uniform sliding is among the attractors wherever it attracts. Another attractor that no state reaches is
+    not found. Attractors are identified by the states at the stops of the outermost block that stops regularly, those
+    without stops by the states at the maxima of its velocity. Raises ValueError, one line, for a wrong argument.
 
     Times are in units of 1/ω. docs/search.md describes the search.
 
