@@ -200,3 +200,22 @@ def test_a_branch_continues_through_the_grazing_at_which_sticking_begins():
     sections = [item.motion.section for item in (first, second, last)]
     assert sections == [ReturnSection.MAXIMA, ReturnSection.MAXIMA, ReturnSection.STOPS]
     assert {int(continuation.branch[place][0]) for place in continuation.grid} == {1}
+
+
+def test_labels_without_stops_depend_on_no_other_state():
+    """One state at a time and many in lanes; one of them rests in uniform sliding."""
+    for model in (oscillator(1.5), cubic(Chain(2, coupling=0.4, pulling=1.0))):
+        attractors, _ = find_attractors(model, replace(SETTINGS, velocity=(0.0, model.v)))
+        generator = np.random.default_rng(4)
+        position, velocity = (
+            generator.uniform(-1.0, 1.0, (20, model.blocks)),
+            generator.uniform(0, 1.0, (20, model.blocks)),
+        )
+        position[0], velocity[0] = model.sliding_offset, model.v
+        labels, times = label_states(model, attractors, position, velocity)
+        alone = [label_states(model, attractors, position[[k]], velocity[[k]]) for k in range(20)]
+        assert labels.tolist() == [item[0][0] for item in alone]
+        assert times.tolist() == [item[1][0] for item in alone]
+        sliding = attractors[0].motion.kind == MotionKind.SLIDING
+        assert labels[0] == (0 if sliding else -1)
+        assert (labels[1:] >= 0).all()
