@@ -34,6 +34,9 @@ CLOSENESS = (1e-9, 1e-7, 1e-5, 1e-4, 1e-3)
 WINDOW = 8000.0
 MAX_RELATIVE_DISTANCE = 30.0
 
+# Fraction of the window in which an attracting orbit without stops is sought first: its maxima are many.
+PART = 1.0 / 64.0
+
 # A mirror-image return takes half of a period. A stop of the mirror block earlier than this fraction of the time to the
 # next stop of the block is not such a return: the two blocks stop almost together.
 MIN_MIRROR_TIME = 0.1
@@ -46,8 +49,8 @@ def limit_cycle(model: Model, state: ChainState, settling: float = 0.0, window: 
     settling, window : times, in units of 1/ω, for the motion to settle first, and within which it must return. The
         default window is 8000, multiplied by the time unit of the chain (`Chain.own_units`)
 
-    Returns are taken at the stops of one block, or at the maxima of its velocity if no block stops in the second half
-    of the window.
+    Returns are taken at the stops of one block, or at the maxima of its velocity, in the following window, if no block
+    stops in the second half of the first one.
 
     The motion lies on an attracting orbit if it approaches the orbit within the window. It lies on an unstable orbit,
     such as synchrony from equal states, only if it never leaves it, since chaotic motion passes near many unstable
@@ -78,21 +81,31 @@ def orbit_of_motion(model: Model, state: ChainState, settling: float, window: fl
     times, values = runner.log.events.times(), runner.log.events.values()
     orbit = orbit_of_events(model, times, values, _is_on_orbit)
     section = "stops"
-    last_event = times[-1] if len(times) else settling
-    if orbit is None and last_event <= settling + 0.5 * window:
-        if np.abs(distance_from_sliding(model, runner.state())).max() <= CLOSENESS[0]:
-            raise OrbitError(f"a = {model.a:.12g}: no periodic orbit found: the motion settles on uniform sliding")
+    if orbit is None and not (times > settling + 0.5 * window).any():
         section = "velocity maxima"
-        times, values = velocity_maxima(model, state, last_event, settling + window)
-        orbit = orbit_of_events(model, times, values, _is_on_orbit)
-        closest = next(_close_returns(model, times, values), None)
-        if orbit is None and closest is not None and (reason := missing_isolation(model, *closest[:2])):
-            raise OrbitError(f"a = {model.a:.12g}: no isolated periodic orbit found: {reason}")
+        orbit = _orbit_without_stops(model, runner.state(), window)
     if orbit is None:
         raise OrbitError(
             f"a = {model.a:.12g}: no periodic orbit found within {window:g}, from returns at the {section} of a block"
         )
     return orbit
+
+
+def _orbit_without_stops(model: Model, state: ChainState, window: float) -> PeriodicOrbit | None:
+    """Return the same as `orbit_of_events` for a motion without stops, within a window that begins at a state.
+
+    Raises OrbitError, with the reason, if the motion slides uniformly or is neutral.
+    """
+    if np.abs(distance_from_sliding(model, state)).max() <= CLOSENESS[0]:
+        raise OrbitError(f"a = {model.a:.12g}: no periodic orbit found: the motion settles on uniform sliding")
+    for part, accepted in ((PART * window, _is_on_stable_orbit), (window, _is_on_orbit)):
+        times, values = velocity_maxima(model, state, 0.0, part)
+        if (orbit := orbit_of_events(model, times, values, accepted)) is not None:
+            return orbit
+        closest = next(_close_returns(model, times, values), None)
+        if closest is not None and (reason := missing_isolation(model, *closest[:2])):
+            raise OrbitError(f"a = {model.a:.12g}: no isolated periodic orbit found: {reason}")
+    return None
 
 
 def orbit_of_events(
@@ -147,6 +160,11 @@ def _close_returns(
             if np.abs((at - state) / scale).max() <= size:
                 yield state_of(state), float(time), symmetry, size
                 break
+
+
+def _is_on_stable_orbit(orbit: PeriodicOrbit, first: float, last: float, size: float) -> bool:
+    """Return whether a motion approaches an orbit that attracts."""
+    return unstable_count(orbit) == 0 and _is_on_orbit(orbit, first, last, size)
 
 
 def _is_on_orbit(orbit: PeriodicOrbit, first: float, last: float, size: float) -> bool:

@@ -124,20 +124,26 @@ def hopf_bifurcations(model: Model, interval: tuple[float, float], *, parameter:
     if not math.isfinite(low) or not math.isfinite(high):
         raise ValueError(f"interval: got ({low:g}, {high:g}), expected finite ends")
     instance_of(model, Model, "model").parameter(parameter)
-    spectra = [(float(value), _oscillations(model, parameter, value)) for value in np.linspace(low, high, PARTS + 1)]
+    values = np.linspace(low, high, PARTS + 1).tolist()
+    spectra = [_oscillations(model, parameter, value) for value in values]
+    # Modes with equal damping cross at one value.
+    critical: list[float] = []
     found = []
     for index in range(model.blocks):
         before: tuple[float, float] | None = None
-        for value, oscillations in spectra:
+        for value, oscillations in zip(values, spectra, strict=True):
             rate = _rate(oscillations, index)
             if math.isnan(rate):
                 before = None
             elif abs(rate) > ROUNDING:
                 if before is not None and (before[1] > 0.0) != (rate > 0.0):
-                    bifurcation = _crossing(model, parameter, before[0], value, index)
-                    found += [] if bifurcation is None else [bifurcation]
+                    root = _critical_value(model, parameter, (before[0], value), index, critical)
+                    found += [(root, index)] if root is not None else []
                 before = value, rate
-    return sorted(found, key=lambda bifurcation: (bifurcation.value, -bifurcation.period))
+    bifurcations = []
+    for root in {root for root, _ in found}:
+        bifurcations += _bifurcations_at(model, parameter, root, [index for at, index in found if at == root])
+    return sorted(bifurcations, key=lambda bifurcation: (bifurcation.value, -bifurcation.period))
 
 
 def jacobian(model: Model) -> np.ndarray:
@@ -164,20 +170,37 @@ def _rate(oscillations: np.ndarray | None, index: int) -> float:
     return float(oscillations[index].real / oscillations[index].imag)
 
 
-def _crossing(model: Model, parameter: str, low: float, high: float, index: int) -> HopfBifurcation | None:
-    """Return the bifurcation between two values at which an oscillation grows and decays; None if there is none."""
+def _critical_value(
+    model: Model, parameter: str, bracket: tuple[float, float], index: int, critical: list[float]
+) -> float | None:
+    """Return the value in a bracket at which an oscillation neither grows nor decays; None if there is none.
+
+    critical : those of other oscillations, which are tried first; a new one is added
+    """
 
     def rate(value: float) -> float:
         return _rate(_oscillations(model, parameter, value), index)
 
+    low, high = bracket
+    for value in critical:
+        if low <= value <= high and abs(rate(value)) <= ROUNDING:
+            return value
     root = float(brentq(rate, low, high, xtol=TOLERANCE * (high - low), rtol=TOLERANCE))
     # Where two oscillations exchange their order, the sign changes in a jump.
     if not abs(rate(root)) <= ROUNDING:
         return None
-    at = model.at(**{parameter: root})
+    critical.append(root)
+    return root
+
+
+def _bifurcations_at(model: Model, parameter: str, value: float, indices: list[int]) -> list[HopfBifurcation]:
+    """Return the bifurcations of some oscillations, numbered from the fastest, at a critical value."""
+    at = model.at(**{parameter: value})
     values, modes = np.linalg.eig(jacobian(at))
     order = np.flatnonzero(values.imag > 0.0)
-    chosen = order[np.argsort(-values[order].imag, kind="stable")][index]
-    velocity = modes[model.blocks :, chosen]
-    mode = modes[:, chosen] / velocity[np.abs(velocity).argmax()]
-    return HopfBifurcation(parameter, root, at, 2.0 * math.pi / float(values[chosen].imag), mode)
+    bifurcations = []
+    for chosen in order[np.argsort(-values[order].imag, kind="stable")][indices]:
+        velocity = modes[model.blocks :, chosen]
+        mode = modes[:, chosen] / velocity[np.abs(velocity).argmax()]
+        bifurcations.append(HopfBifurcation(parameter, value, at, 2.0 * math.pi / float(values[chosen].imag), mode))
+    return bifurcations
