@@ -23,6 +23,8 @@ from burridge_knopoff import (
     limit_cycle,
     locate_bifurcations,
     multipliers,
+    plot,
+    synchronized_orbit,
 )
 from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form
 from burridge_knopoff.periodic_orbits.without_stops import sliding_state
@@ -144,6 +146,7 @@ def test_the_unstable_orbit_meets_the_stick_slip_orbit_where_it_grazes(oscillato
     assert grazing.value == pytest.approx(GRAZING, abs=1e-8)
     assert (grazing.before.orbit.stop_counts, grazing.after.orbit.stop_counts) == ((0,), (1,))
     assert [point.multipliers.unstable_count for point in (grazing.before, grazing.after)] == [1, 0]
+    assert grazing.stick_time == 0.0
 
 
 def test_the_branch_from_stick_slip_leads_through_the_grazing_to_the_hopf_bifurcation():
@@ -154,6 +157,7 @@ def test_the_branch_from_stick_slip_leads_through_the_grazing_to_the_hopf_bifurc
     assert (grazing.kind, hopf.kind) == (BifurcationKind.GRAZING, BifurcationKind.HOPF)
     assert grazing.value == pytest.approx(GRAZING, abs=1e-8)
     assert hopf.value == pytest.approx(HOPF, abs=1e-11)
+    assert math.isnan(hopf.stick_time)
     assert hopf.at.multipliers.whole == pytest.approx([1.0], abs=1e-9)
     assert branch[-1].reduced_orbit.model.v == branch[-1].value
     with refused("bifurcation"):
@@ -241,6 +245,20 @@ def test_a_motion_without_stops_settles_on_an_orbit_that_scipy_closes(case):
     check_by_scipy(orbit)
     mean = orbit.mean_distance
     assert mean > 0.1 if symmetry == Symmetry.SYMMETRIC else mean >= 0.0
+
+
+def test_the_synchronized_orbit_may_be_one_without_stops():
+    """At the a of the model: at the values of a where others are sought, the chain slides uniformly."""
+    model, velocity, _ = CASES["two blocks in phase"]
+    orbit = synchronized_orbit(model)
+    assert orbit.stop_counts == (0, 0)
+    assert orbit.period == pytest.approx(settled(model, *velocity).period, abs=1e-9)
+
+
+def test_a_picture_of_an_orbit_shows_no_stop(hopf):
+    velocities, _ = plot(hopf.orbit(0.1)).axes
+    lowest = min(line.get_ydata().min() for line in velocities.lines)
+    assert lowest == pytest.approx(0.9 * hopf.value, rel=0.01)
 
 
 def test_a_double_traversal_is_reduced():

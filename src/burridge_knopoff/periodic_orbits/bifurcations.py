@@ -12,6 +12,7 @@ Reference: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -100,10 +101,12 @@ class Bifurcation:
 
     @property
     def stick_time(self) -> float:
-        """Shortest stick of the orbit at the bifurcation; 0 if its duration vanishes."""
+        """Shortest stick of the orbit at the bifurcation; 0 if its duration vanishes, NaN if no block sticks."""
         shortest = float(self.at.grazing_distances.stick.min())
         none = NO_STICK * self.at.orbit.model.chain.own_units.time
-        return 0.0 if self.kind == BifurcationKind.GRAZING and shortest < none else shortest
+        if self.kind == BifurcationKind.GRAZING and not none <= shortest < math.inf:
+            return 0.0
+        return shortest if shortest < math.inf else math.nan
 
     @property
     def loses_stability(self) -> bool:
