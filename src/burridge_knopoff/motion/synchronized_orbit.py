@@ -1,7 +1,7 @@
 """The synchronized orbit of a chain that is its own mirror image: the orbit on which mirror blocks move identically.
 
-A run from rest stays mirror-symmetric to the bit and settles on this orbit at moderate a, or on an orbit without stops at
-the a of the model. From there the orbit is continued, whether it is stable or not.
+A run from rest stays mirror-symmetric to the bit and settles on this orbit at moderate a, or on an orbit without stops
+at the a of the model. From there the orbit is continued, whether it is stable or not.
 """
 
 from __future__ import annotations
