@@ -36,8 +36,8 @@ chain's normal modes, which tell locked blocks from blocks that move in one mode
 
 Bifurcations: `follow` continues a periodic orbit, or that on which a motion settles, in any parameter, with
 `ContinuationSettings`, and returns its branch as `BranchOrbit`s. `locate_bifurcations` finds each `Bifurcation` on the
-branch and its `BifurcationKind`. `follow_bifurcation` continues a bifurcation in two parameters and returns a
-`BifurcationCurve`.
+branch and its `BifurcationKind`. `hopf_bifurcations` returns each `HopfBifurcation` of uniform sliding, at which orbits
+without stops begin. `follow_bifurcation` continues a bifurcation in two parameters and returns a `BifurcationCurve`.
 """
 
 import lazy_loader

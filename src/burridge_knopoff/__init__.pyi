@@ -16,6 +16,7 @@ from .library.analyses import edge_state as edge_state
 from .library.analyses import event_exponents as event_exponents
 from .library.analyses import event_multipliers as event_multipliers
 from .library.analyses import find_periodic_orbit as find_periodic_orbit
+from .library.analyses import hopf_bifurcations as hopf_bifurcations
 from .library.analyses import label_states as label_states
 from .library.analyses import limit_cycle as limit_cycle
 from .library.analyses import mode_amplitudes as mode_amplitudes
@@ -50,6 +51,7 @@ from .periodic_orbits.floquet import Multipliers as Multipliers
 from .periodic_orbits.floquet import multipliers as multipliers
 from .periodic_orbits.flow import OrbitError as OrbitError
 from .periodic_orbits.following import ContinuationSettings as ContinuationSettings
+from .periodic_orbits.hopf import HopfBifurcation as HopfBifurcation
 from .periodic_orbits.periodic import PeriodicOrbit as PeriodicOrbit
 from .periodic_orbits.pseudo_arclength import BranchOrbit as BranchOrbit
 from .periodic_orbits.symmetry import Symmetry as Symmetry

@@ -89,6 +89,13 @@ def test_the_synchronized_orbit(capsys):
         assert printed.count(" stops\n") == printed.count(" starts\n") == 3
 
 
+def test_an_orbit_without_stops(capsys):
+    law = ["--formula", "1 - a*u + b*u**3", "--number", "b=0.3", "--a", "0.5", "--v", "0.7"]
+    printed = said(capsys, "orbit", *law, "--position=-0.5,-0.9", "--velocity", "0.5,0.7")
+    assert "\nmultipliers  1 (the flow), -0.857372 +- 0.289472i, 0.78922\nstops        none\n" in printed
+    assert printed.splitlines()[-1].startswith("residual")
+
+
 def test_the_orbit_that_a_state_comes_to(capsys):
     orbit = limit_cycle(MODEL, MODEL.begin(PAPER_STATES["plus"]), 3000.0)
     printed = said(capsys, "orbit", *GIVEN, "--initial", "plus", "--events", "4")

@@ -60,6 +60,13 @@ def test_the_parameters_of_the_law_are_those_of_the_orbit():
     assert branch[-1].value <= 0.98
 
 
+def test_a_motion_without_stops_has_a_branch_as_well():
+    law, state = {"formula": "1 - a*u + b*u**3", "b": 0.3}, {"name": "own", "position": -0.6, "velocity": (0.5, 0.9)}
+    branch = follow(law, 0.5, (0.69, 0.71), initial=state, v=0.7, parameter="v")
+    assert {point.orbit.stop_counts for point in branch} == {(0, 0)}
+    assert branch[-1].value >= 0.71
+
+
 def test_a_motion_that_has_not_settled_is_on_no_orbit():
     with pytest.raises(OrbitError, match="no periodic orbit"):
         follow(MODEL, ENDS, initial="plus", settling=0.0)

@@ -23,6 +23,7 @@ from burridge_knopoff import (
     Symmetry,
     find_attractors,
     follow,
+    hopf_bifurcations,
     law_of,
     limit_cycle,
     locate_bifurcations,
@@ -36,6 +37,7 @@ from tests.refused import refused
 MODEL = Model(Chain(3), law_of("linearized", 0.0865))
 STATE = MODEL.begin(InitialState("own", (-0.9, -1.1, -0.9), (0.1, 0.1, 0.1)))
 DROPPING = Model(Chain(2), law_of("carlson_langer", 1.0))
+WEAKENING = Model(Chain(1), FormulaLaw(0.5, "1 - a*u + b*u**3", b=0.3), v=0.7)
 REST = DROPPING.begin(InitialState("rest", (-0.5, -0.6), (0.0, 0.0)), "tested")
 QUICK = {"transient": 0, "window": 1, "batches": 2}
 EDGE_MODEL = Model(Chain(3), law_of("linearized", 0.08))
@@ -99,6 +101,7 @@ def correct_calls():
             "interval": (0.0999, 0.1001),
             "settings": ContinuationSettings(first_step=1e-3, largest_step=1e-2),
         },
+        "hopf_bifurcations": {"model": MODEL, "interval": (0.0, 0.2), "parameter": "pulling_damping"},
         "label_states": {"model": MODEL, "attractors": [], "position": np.ones((1, 3)), "velocity": np.ones((1, 3))},
         "law_of": {"name": "linearized", "a": 0.08, "description": {}},
         "locate_bifurcations": {"branch": branch},
@@ -167,6 +170,7 @@ def test_a_wrong_type_is_refused_in_one_line(name, argument):
 #: Methods with numbers that are settings, and arguments that they take.
 METHODS = {
     "Catalogue.slope": lambda: (record_events(DROPPING, REST, 200.0), {"low": -9.0, "high": 9.0}),
+    "HopfBifurcation.orbit": lambda: (hopf_bifurcations(WEAKENING, (0.7, 0.8), parameter="v")[0], {"amplitude": 0.02}),
     "InitialState.coordinates": lambda: (InitialState("own", -0.9, 0.1), {"blocks": 3}),
     "MotionSettings.scaled_by": lambda: (MotionSettings(), {"share": 0.5}),
     "MotionSettings.scaled_to_velocity": lambda: (MotionSettings(), {"v": 0.05}),
@@ -194,7 +198,7 @@ FORMULAS = {
 }
 TYPES = ("float", "int", "bool", "Any")
 INTERVALS = [("basin_map", "first_position"), ("basin_map", "last_position")]
-INTERVALS += [("follow", "interval"), ("follow_bifurcation", "interval")]
+INTERVALS += [(name, "interval") for name in ("follow", "follow_bifurcation", "hopf_bifurcations")]
 
 
 def with_numbers(function, arguments):

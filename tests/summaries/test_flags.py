@@ -18,6 +18,7 @@ BIFURCATION = {
     3: "neimark_sacker",
     4: "pitchfork",
     5: "crisis",
+    6: "hopf",
 }
 DIRECTION = {-1: "downward", 1: "upward"}
 VERDICT = {-1: "undetermined", **YES_NO}

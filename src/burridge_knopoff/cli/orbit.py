@@ -96,23 +96,24 @@ def _lines(orbit: PeriodicOrbit, most: int) -> list[str]:
         if spectrum.unstable_count
         else "stable: no multiplier"
     )
+    stops = f"{' '.join(map(str, orbit.stop_counts))} (each block, in a period)" if any(orbit.stop_counts) else "none"
     lines = [
         f"symmetry     {orbit.symmetry.name.lower()}",
         f"period       {orbit.period:.9f}",
         f"stability    {stability} outside the unit circle",
-        f"multipliers  1 (the flow), {_complex(spectrum.whole)}; the others are 0",
+        f"multipliers  1 (the flow), {_complex(spectrum.whole)}"
+        + "; the others are 0" * any(abs(spectrum.whole) <= ZERO),
     ]
     if len(spectrum.symmetry_breaking):
         lines.append(
             f"             mirror-breaking perturbations: {_complex(spectrum.symmetry_breaking**spectrum.power)}"
         )
     lines += [
-        f"stops        {' '.join(map(str, orbit.stop_counts))} (each block, in a period)",
+        f"stops        {stops}",
         f"residual     {orbit.residual:.1e} after a return",
-        "",
     ]
     events = [(f"{time:.9f}", f"block {block + 1}", ("stops", "starts")[kind]) for time, block, kind in orbit.events]
-    lines += table(("time", "", ""), events[:most])
+    lines += ["", *table(("time", "", ""), events[:most])] if events else []
     return lines + [f"and {len(events) - most} more: --events {len(events)}"] * (len(events) > most)
 
 

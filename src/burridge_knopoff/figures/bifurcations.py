@@ -40,7 +40,7 @@ undetermined changes are only known to lie in a range of a, the width of the bar
 MARK: Any = {"color": "black", "markersize": 3.6, "markerfacecolor": "white", "markeredgewidth": 0.7}
 #: Look of the curves of stable and of unstable orbits.
 ORBITS: dict[bool, Any] = {True: {"linewidth": 1.3, "linestyle": "-"}, False: {"linewidth": 0.7, "linestyle": "--"}}
-#: Rows of the middle panels: what is not known comes last.
+#: Rows of the middle panels: what is not known comes last. Hopf bifurcations have a row if there are any.
 ROWS = sorted(BifurcationKind, key=lambda kind: kind < 0)
 
 #: Ranges of a and ⟨J⟩ in the lower panels.
@@ -131,18 +131,19 @@ def _bifurcations(
     """
     a, error, kind = (bifurcations[name].values for name in ("a", "a_error", "kind"))
     branch = _branch(bifurcations)
-    for row, bifurcation in enumerate(ROWS):
+    rows = [row for row in ROWS if row != BifurcationKind.HOPF or row in kind]
+    for row, bifurcation in enumerate(rows):
         for k in np.flatnonzero((bifurcations["law"].values == law) & (kind == bifurcation)):
             color = colors.get(int(branch[k]), OTHER_BRANCHES)
             width = 0.0 if bifurcation.mark else 2.0 * error[k]
             panel.barh(row, width, 0.8, a[k] - 0.5 * width, color=color, edgecolor=color, linewidth=0.6, alpha=0.8)
-    panel.set_yticks(range(len(ROWS)), [bifurcation.words for bifurcation in ROWS], fontsize=7.0)
+    panel.set_yticks(range(len(rows)), [bifurcation.words for bifurcation in rows], fontsize=7.0)
     panel.tick_params(axis="y", length=0, pad=11)
     if is_first:
         outside = blended_transform_factory(panel.transAxes, panel.transData)
-        for row, bifurcation in enumerate(ROWS):
+        for row, bifurcation in enumerate(rows):
             panel.plot(-0.022, row, bifurcation.mark or "None", transform=outside, clip_on=False, **MARK)
-    panel.set_ylim(len(ROWS) - 0.4, -0.6)
+    panel.set_ylim(len(rows) - 0.4, -0.6)
 
 
 def _branch(bifurcations: xarray.Dataset) -> np.ndarray:

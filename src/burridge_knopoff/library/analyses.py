@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 from burridge_knopoff.attractors import labels
 from burridge_knopoff.basins import edge_state as edges
 from burridge_knopoff.catalogue import stability
+from burridge_knopoff.laws import Law
 from burridge_knopoff.library import catalogue
 from burridge_knopoff.library.keyword_settings import divide, settings_of, takes_model
 from burridge_knopoff.library.model_forms import GivenLaw, model_of
@@ -19,7 +20,8 @@ from burridge_knopoff.model.model import STARTS, ChainState, Model
 from burridge_knopoff.motion import chain_synchronization, frequency, modes
 from burridge_knopoff.motion import limit_cycle as cycles
 from burridge_knopoff.motion import synchronized_orbit as synchrony
-from burridge_knopoff.periodic_orbits import periodic
+from burridge_knopoff.periodic_orbits import hopf, periodic
+from burridge_knopoff.values import is_sequence
 
 _T = TypeVar("_T")
 
@@ -42,6 +44,8 @@ def _of_law(function: Callable[..., _T], *states: str) -> Callable[..., _T]:
     @takes_model
     @wraps(function, assigned=("__name__", "__qualname__"))
     def call(law: Model | GivenLaw, a: float | None = None, *others: Any, **by_name: Any) -> _T:
+        if names[:1] == ["interval"] and isinstance(law, Model | Law) and is_sequence(a):
+            a, others = None, (a, *others)
         own = signature.bind_partial(None, *others, **{name: by_name.pop(name) for name in names if name in by_name})
         begin = {"start": by_name.pop("start", "moving")} if states else {}
         if isinstance(begin.get("start"), ChainState):
@@ -92,6 +96,7 @@ def _keyword(name: str, default: Any, kind: Any) -> inspect.Parameter:
 synchronized_orbit = _of_law(synchrony.synchronized_orbit)
 limit_cycle = _of_law(cycles.limit_cycle, "state")
 find_periodic_orbit = _of_law(periodic.find_periodic_orbit, "guess")
+hopf_bifurcations = _of_law(hopf.hopf_bifurcations)
 edge_state = _of_law(edges.edge_state, "state_a", "state_b")
 transverse_exponent = _of_law(chain_synchronization.transverse_exponent, "state")
 block_frequencies = _of_law(frequency.block_frequencies, "state")

@@ -1,4 +1,8 @@
-"""The periodic orbit on which a motion has settled, found from its close returns to a state or to its mirror image."""
+"""The periodic orbit on which a motion has settled, found from its close returns to a state or to its mirror image.
+
+The returns are taken at the stops of a block or, if no block stops, at the maxima of the velocity of a block that
+moves.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +19,7 @@ from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit
 from burridge_knopoff.periodic_orbits.return_map import mirror_order
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.periodic_orbits.without_stops import distance_from_sliding, missing_isolation, velocity_maxima
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.settings import DURATION, TIME
 from burridge_knopoff.running.status import Status
@@ -29,6 +34,9 @@ CLOSENESS = (1e-9, 1e-7, 1e-5, 1e-4, 1e-3)
 WINDOW = 8000.0
 MAX_RELATIVE_DISTANCE = 30.0
 
+# Fraction of the window in which an attracting orbit without stops is sought first: its maxima are many.
+PART = 1.0 / 64.0
+
 # A mirror-image return takes half of a period. A stop of the mirror block earlier than this fraction of the time to the
 # next stop of the block is not such a return: the two blocks stop almost together.
 MIN_MIRROR_TIME = 0.1
@@ -41,12 +49,16 @@ def limit_cycle(model: Model, state: ChainState, settling: float = 0.0, window: 
     settling, window : times, in units of 1/ω, for the motion to settle first, and within which it must return. The
         default window is 8000, multiplied by the time unit of the chain (`Chain.own_units`)
 
+    Returns are taken at the stops of one block, or at the maxima of its velocity, in the following window, if no block
+    stops in the second half of the first one.
+
     The motion lies on an attracting orbit if it approaches the orbit within the window. It lies on an unstable orbit,
     such as synchrony from equal states, only if it never leaves it, since chaotic motion passes near many unstable
     orbits.
 
-    Raises OrbitError if the motion does not return within the window or lies on no periodic orbit, and ValueError for a
-    time or a state that is not allowed.
+    Raises OrbitError if the motion does not return within the window or lies on no isolated periodic orbit, as if it
+    settles on uniform sliding, or if orbits without stops have any amplitude (under a law that is linear in speed).
+    Raises ValueError for a time or a state that is not allowed.
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, simulate
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
@@ -68,9 +80,32 @@ def orbit_of_motion(model: Model, state: ChainState, settling: float, window: fl
         raise OrbitError(f"a = {model.a!r}: the run ends at τ = {runner.clock!r}, before {settling + window!r}")
     times, values = runner.log.events.times(), runner.log.events.values()
     orbit = orbit_of_events(model, times, values, _is_on_orbit)
+    section = "stops"
+    if orbit is None and not (times > settling + 0.5 * window).any():
+        section = "velocity maxima"
+        orbit = _orbit_without_stops(model, runner.state(), window)
     if orbit is None:
-        raise OrbitError(f"a = {model.a:.12g}: no periodic orbit found within {window:g}")
+        raise OrbitError(
+            f"a = {model.a:.12g}: no periodic orbit found within {window:g}, from returns at the {section} of a block"
+        )
     return orbit
+
+
+def _orbit_without_stops(model: Model, state: ChainState, window: float) -> PeriodicOrbit | None:
+    """Return the same as `orbit_of_events` for a motion without stops, within a window that begins at a state.
+
+    Raises OrbitError, with the reason, if the motion slides uniformly or is neutral.
+    """
+    if np.abs(distance_from_sliding(model, state)).max() <= CLOSENESS[0]:
+        raise OrbitError(f"a = {model.a:.12g}: no periodic orbit found: the motion settles on uniform sliding")
+    for part, accepted in ((PART * window, _is_on_stable_orbit), (window, _is_on_orbit)):
+        times, values = velocity_maxima(model, state, 0.0, part)
+        if (orbit := orbit_of_events(model, times, values, accepted)) is not None:
+            return orbit
+        closest = next(_close_returns(model, times, values), None)
+        if closest is not None and (reason := missing_isolation(model, *closest[:2])):
+            raise OrbitError(f"a = {model.a:.12g}: no isolated periodic orbit found: {reason}")
+    return None
 
 
 def orbit_of_events(
@@ -81,6 +116,7 @@ def orbit_of_events(
 ) -> PeriodicOrbit | None:
     """Return the shortest periodic orbit on which a motion lies, from its events as the kernel stores them, or None.
 
+    times, values : also the `velocity_maxima` of a motion without stops
     accepted : takes an orbit, the distances of the first and the last cycle of the motion from the orbit, and the
         distance of the return, all for v = 0.1 in the chain's own units; returns whether the motion lies on the orbit
     """
@@ -97,7 +133,10 @@ def orbit_of_events(
 def _close_returns(
     model: Model, times: np.ndarray, values: np.ndarray
 ) -> Iterator[tuple[ChainState, float, Symmetry, float]]:
-    """Yield a state, the time of its return, the symmetry and the distance: closest returns first, then shortest."""
+    """Yield a state, the time of its return, the symmetry and the distance: closest returns first, then shortest.
+
+    times, values : see `orbit_of_events`
+    """
     stops = values[:, 1] == 0
     if not stops.any():
         return
@@ -123,6 +162,11 @@ def _close_returns(
                 break
 
 
+def _is_on_stable_orbit(orbit: PeriodicOrbit, first: float, last: float, size: float) -> bool:
+    """Return whether a motion approaches an orbit that attracts."""
+    return unstable_count(orbit) == 0 and _is_on_orbit(orbit, first, last, size)
+
+
 def _is_on_orbit(orbit: PeriodicOrbit, first: float, last: float, size: float) -> bool:
     """Return whether a motion stays on an orbit, or approaches it if the orbit attracts."""
     return last <= (
@@ -132,18 +176,23 @@ def _is_on_orbit(orbit: PeriodicOrbit, first: float, last: float, size: float) -
 
 def _cycle_distances(orbit: PeriodicOrbit, values: np.ndarray) -> tuple[float, float]:
     """Return the distances of the first and the last cycle of a motion from an orbit, by the events of the motion."""
-    block = int(np.flatnonzero(orbit.stop_counts)[0]) + 1
-    around = flow(orbit.model, orbit.reference, orbit.period)
-    orbit_stops, motion_stops = (
-        _states_at_stops(events, block) / orbit.model.state_scale for events in (around.log.events.values(), values)
-    )
+    if any(orbit.stop_counts):
+        around = flow(orbit.model, orbit.reference, orbit.period).log.events.values()
+        block = int(np.flatnonzero(orbit.stop_counts)[0]) + 1
+    else:
+        # In one period rounding may hide a maximum at the reference.
+        around = velocity_maxima(orbit.model, orbit.reference, 0.0, 1.5 * orbit.period)[1]
+        block = int(around[:, 0].min())
+    orbit_states, motion_states = (_states_on_section(rows, block) for rows in (around, values))
+    if not len(motion_states):
+        return np.inf, np.inf
     first, last = (
-        distance(cycle, orbit_stops, share=1.0)
-        for cycle in (motion_stops[: len(orbit_stops)], motion_stops[-len(orbit_stops) :])
+        distance(cycle / orbit.model.state_scale, orbit_states / orbit.model.state_scale, share=1.0)
+        for cycle in (motion_states[: len(orbit_states)], motion_states[-len(orbit_states) :])
     )
     return first, last
 
 
-def _states_at_stops(values: np.ndarray, block: int) -> np.ndarray:
-    """Return the states at the stops of one block, from 1, shape (stops, 2 blocks)."""
+def _states_on_section(values: np.ndarray, block: int) -> np.ndarray:
+    """Return the states at the stops, or the velocity maxima, of one block, from 1, shape (n, 2 blocks)."""
     return values[(values[:, 0] == block) & (values[:, 1] == 0), 2:]

@@ -1,7 +1,7 @@
 """The synchronized orbit of a chain that is its own mirror image: the orbit on which mirror blocks move identically.
 
-A run from rest stays mirror-symmetric to the bit and settles on this orbit at moderate a. From there the orbit is
-continued, whether it is stable or not.
+A run from rest stays mirror-symmetric to the bit and settles on this orbit at moderate a, or on an orbit without stops
+at the a of the model. From there the orbit is continued, whether it is stable or not.
 """
 
 from __future__ import annotations
@@ -56,13 +56,14 @@ def synchronized_orbits(model: Model) -> KnownOrbits:
 
     model : at any a
 
-    Raises OrbitError if its chain is not its own mirror image, or if no orbit is found at any of the SEEDS.
+    Raises OrbitError if its chain is not its own mirror image, or if no orbit is found at any of the SEEDS
+    or at the a of the model.
     """
     if not model.chain.is_mirror_symmetric:
         raise OrbitError("chain: got a chain that is not its own mirror image, expected one that is")
     seeds = [model.chain.a_unit * a for a in SEEDS]
-    for find in (_single_cycle_orbit, _settled_orbit):
-        for a in seeds:
+    for find, values in ((_single_cycle_orbit, seeds), (_settled_orbit, [*seeds, model.a])):
+        for a in values:
             try:
                 return KnownOrbits(find(model_at(model, a)))
             except OrbitError:

@@ -14,6 +14,7 @@ class BifurcationKind(IntEnum):
     neimark_sacker : a pair of complex multipliers leaves the unit circle, a torus branches off
     pitchfork : mirror symmetry breaks, multiplier +1 of a symmetry-breaking perturbation
     crisis : an attractor that is not a periodic orbit ends
+    hopf : an orbit without stops shrinks to uniform sliding
 
     words : name in texts and figures; mark : matplotlib marker in figures, empty if only a range of a is known
 
@@ -38,3 +39,4 @@ class BifurcationKind(IntEnum):
     NEIMARK_SACKER = 3, "Neimark–Sacker", "o"
     PITCHFORK = 4, "pitchfork", "P"
     CRISIS = 5, "crisis"
+    HOPF = 6, "Hopf", "^"

@@ -21,7 +21,7 @@ from burridge_knopoff.periodic_orbits.flow import OrbitError, flow
 from burridge_knopoff.periodic_orbits.following import STEP_GROWTH
 from burridge_knopoff.periodic_orbits.grazing_distances import grazing_distances
 from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine
-from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, orbit_of, safe_offset
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, missing_isolation_of, orbit_of, safe_offset
 from burridge_knopoff.periodic_orbits.pseudo_arclength import (
     BranchOrbit,
     adapt_symmetry,
@@ -53,12 +53,15 @@ class CurvePoint:
 class BifurcationPlane:
     """The plane of two parameters, and the function that vanishes at one kind of bifurcation of an orbit.
 
-    Raises ValueError, one line, if the bifurcation requires a symmetry that one of the parameters breaks.
+    Raises ValueError, one line, if the bifurcation requires a symmetry that one of the parameters breaks, and for a
+    Hopf bifurcation, which has a closed form.
 
     Points of the plane are in the units of `line_of` at the bifurcation.
     """
 
     def __init__(self, bifurcation: Bifurcation, names: tuple[str, str]) -> None:
+        if bifurcation.kind == BifurcationKind.HOPF:
+            raise refusal("bifurcation", bifurcation, "another kind: `hopf_bifurcations` has this one in closed form")
         orbit = bifurcation.at.orbit
         for name in names:
             orbit = adapt_symmetry(line_of(orbit, name), orbit)
@@ -101,7 +104,7 @@ class BifurcationPlane:
 
         def orbit_at(distance: float) -> PeriodicOrbit:
             orbit = solve_ahead(model, guess, time, self.symmetry, line, tangent, distance, target_residual=0.0)
-            if abs(orbit.return_time - time) > CHANGE * time or not any(orbit.stop_counts):
+            if abs(orbit.return_time - time) > CHANGE * time or missing_isolation_of(orbit):
                 raise OrbitError(f"{line.place(model)}: no orbit found near the guess")
             return orbit
 

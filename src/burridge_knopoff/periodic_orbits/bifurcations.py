@@ -1,9 +1,10 @@
-"""Bifurcations along a branch of periodic orbits: grazing, fold, period doubling, Neimark-Sacker, pitchfork.
+"""Bifurcations along a branch of periodic orbits: grazing, fold, period doubling, Neimark-Sacker, pitchfork, Hopf.
 
 Grazings are corners of the branch, which `following` reaches. Every other kind is a change of sign, between two orbits,
 of a function of the multipliers, whose root along the branch is found with additional orbits. The test function of a
 fold also changes sign where a branch joins a branch of simpler orbits: less symmetric orbits begin as symmetric orbits,
-and orbits of twice the period as orbits of the single period. On the branch that begins, a pitchfork and a period
+and orbits of twice the period as orbits of the single period. Orbits without stops begin at a Hopf bifurcation of
+uniform sliding, which has a closed form. On the branch that begins, a pitchfork and a period
 doubling are distinguished from a fold by this simpler orbit.
 
 Reference: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.3 and 10.2.
@@ -11,6 +12,7 @@ Reference: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -20,10 +22,12 @@ from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.critical_values import MULTIPLIER_TESTS, critical_values
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.following import follow
+from burridge_knopoff.periodic_orbits.hopf import hopf_bifurcations
 from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form
-from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, orbit_of
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, step_along
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.periodic_orbits.without_stops import is_sliding, sliding_state
 from burridge_knopoff.values import each_instance_of
 
 # Accuracy in length along a branch to which roots are found, and half-widths of their brackets, to be tried in turn.
@@ -97,10 +101,12 @@ class Bifurcation:
 
     @property
     def stick_time(self) -> float:
-        """Shortest stick of the orbit at the bifurcation; 0 if its duration vanishes."""
+        """Shortest stick of the orbit at the bifurcation; 0 if its duration vanishes, NaN if no block sticks."""
         shortest = float(self.at.grazing_distances.stick.min())
         none = NO_STICK * self.at.orbit.model.chain.own_units.time
-        return 0.0 if self.kind == BifurcationKind.GRAZING and shortest < none else shortest
+        if self.kind == BifurcationKind.GRAZING and not none <= shortest < math.inf:
+            return 0.0
+        return shortest if shortest < math.inf else math.nan
 
     @property
     def loses_stability(self) -> bool:
@@ -206,6 +212,8 @@ def _branch_points(point: BranchOrbit, following: BranchOrbit) -> list[Bifurcati
     lengths = point.line.rates[0] * (point.length + following.length)
     reach = BRANCH_POINT_RANGE * abs(following.value - point.value) + lengths
     around = following.value - reach, following.value + reach
+    if is_sliding(simple.model, simple.reference):
+        return _hopf_point(point, around)
     kind = _branch_point_kind(point.orbit, simple)
     candidates = []
     for upward in (True, False):
@@ -220,6 +228,19 @@ def _branch_points(point: BranchOrbit, following: BranchOrbit) -> list[Bifurcati
         return []
     bifurcation = min(candidates, key=lambda bifurcation: abs(bifurcation.value - following.value))
     return [Bifurcation(bifurcation.value, bifurcation.error, bifurcation.kind, bifurcation.at, point, None, False)]
+
+
+def _hopf_point(point: BranchOrbit, around: tuple[float, float]) -> list[Bifurcation]:
+    """Return the Hopf bifurcation within a range of the parameter at which the orbits of a branch end."""
+    orbit, line = point.orbit, point.line
+    ends = hopf_bifurcations(orbit.model, around, parameter=line.parameter)
+    if not ends:
+        return []
+    end = min(ends, key=lambda end: abs(end.period - orbit.period))
+    return_time = end.period * orbit.return_time / orbit.period
+    sliding = orbit_of(end.model, sliding_state(end.model), return_time, orbit.symmetry)
+    at = BranchOrbit(sliding, point.tangent, line)
+    return [Bifurcation(end.value, ROUNDING, BifurcationKind.HOPF, at, point, None, False)]
 
 
 def kind_at(at: BranchOrbit, key: tuple[BifurcationKind, str]) -> BifurcationKind | None:

@@ -24,7 +24,7 @@ from burridge_knopoff.periodic_orbits.critical_values import critical_values
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.grazing_distances import has_friction_drop
 from burridge_knopoff.periodic_orbits.minimal_orbit import reduced_orbit
-from burridge_knopoff.periodic_orbits.periodic import orbit_of
+from burridge_knopoff.periodic_orbits.periodic import missing_isolation_of, orbit_of
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, step_along, tangent_of
 
 # Distance at which a corner counts as reached, and limits on the number of steps and of failed steps.
@@ -63,7 +63,8 @@ def distance_to_grazing(before: BranchOrbit, point: BranchOrbit) -> float:
 def smooth_step(path: Sequence[BranchOrbit], length: float) -> BranchOrbit | None:
     """Return the orbit at a length from the end of a path along a branch; None if none with the same stops is found.
 
-    If it is a simpler orbit, traversed several times or described without its symmetry, `reduced_orbit` is that orbit.
+    If it is a simpler orbit, traversed several times or described without its symmetry, `reduced_orbit` is that orbit;
+    beyond a Hopf bifurcation it is uniform sliding.
     It is accepted only if the path approaches it, so that the multiplier that equals 1 there approaches 1. A long step
     may also jump to such an orbit that is not on the branch.
     """
@@ -74,7 +75,7 @@ def smooth_step(path: Sequence[BranchOrbit], length: float) -> BranchOrbit | Non
         return None
     if candidate.orbit.stop_counts != point.orbit.stop_counts:
         return None
-    simpler = reduced_orbit(candidate.orbit)
+    simpler = candidate.reduced_orbit or reduced_orbit(candidate.orbit)
     if simpler is not None and not _distance_to_branch_point(path) <= STEPS_TO_BRANCH_POINT * length:
         return None
     return replace(candidate, reduced_orbit=simpler)
@@ -132,12 +133,15 @@ def switch_branch(point: BranchOrbit) -> BranchOrbit | None:
         return None
     blocks = orbit.model.blocks
     scale = line.units.state(blocks)
-    change = point.tangent[:-2] / max(float(np.abs(point.tangent[:-2] / scale).max()), 1e-3)
+    size = max(float(np.abs(point.tangent[:-2] / scale).max()), 1e-3)
+    change = point.tangent[:-2] / size
+    # The smallest speed of an orbit without stops depends on v as well: both must change as along the branch.
+    ahead = float(point.tangent[-1]) / (1.0 if any(orbit.stop_counts) else size)
     for beyond in OFFSETS_BEYOND:
         vector = orbit.reference.vector() + beyond * change
         state = ChainState(vector[:blocks], vector[blocks:], orbit.reference.stuck)
         try:
-            coordinate = line.coordinate(orbit.model) + beyond * float(point.tangent[-1])
+            coordinate = line.coordinate(orbit.model) + beyond * ahead
             model = line.model(orbit.model, max(coordinate, line.lower_bound))
             tangent = tangent_of(orbit_of(model, state, orbit.return_time, orbit.symmetry), line)
         except OrbitError:
@@ -148,13 +152,13 @@ def switch_branch(point: BranchOrbit) -> BranchOrbit | None:
                     candidate = step_along(point, length, side * tangent)
                 except OrbitError:
                     continue
-                # Reject an orbit without stops, which is neutral, as at a = 0. Reject multiple traversals of a simpler
-                # orbit near the corner, which does not continue the branch. Reject the mirror image of the path itself:
-                # its corner is then the point at which less symmetric orbits begin.
+                # Reject uniform sliding and neutral orbits without stops, as at a = 0. Reject multiple traversals of a
+                # simpler orbit near the corner, which does not continue the branch. Reject the mirror image of the path
+                # itself: its corner is then the point at which less symmetric orbits begin.
                 signature = candidate.orbit.stop_counts
                 if (
                     signature not in (orbit.stop_counts, orbit.stop_counts[::-1])
-                    and any(signature)
+                    and not missing_isolation_of(candidate.orbit)
                     and reduced_orbit(candidate.orbit) is None
                 ):
                     return candidate

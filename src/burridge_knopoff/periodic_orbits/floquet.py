@@ -22,6 +22,7 @@ from burridge_knopoff.periodic_orbits.flow import OrbitError, rate
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.return_map import allowed_directions, symmetry_breaking_directions
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.periodic_orbits.without_stops import is_sliding
 from burridge_knopoff.values import instance_of
 
 
@@ -96,6 +97,10 @@ def multipliers(orbit: PeriodicOrbit) -> Multipliers:
     units = orbit.model.chain.own_units
     scale = units.state(orbit.model.blocks)
     flow = (rate(orbit.model, orbit.reference) * units.time / scale) @ keeping
+    if is_sliding(orbit.model, orbit.reference):
+        # Uniform sliding has no flow; at its Hopf bifurcation the multiplier 1 has two directions.
+        values, directions = np.linalg.eig(orbit.monodromy * scale / scale[:, None])
+        flow = directions[:, np.abs(values - 1.0).argmin()].real @ keeping
     across = keeping @ np.linalg.svd(flow[:, None])[0][:, 1:]
     monodromy = orbit.monodromy * scale / scale[:, None]
     kept, broken = (_sorted(np.linalg.eigvals(basis.T @ monodromy @ basis)) for basis in (across, breaking))

@@ -11,6 +11,7 @@ from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.periodic_orbits.without_stops import velocity_maxima
 
 # Distance, for v = 0.1 in the chain's own units, within which an orbit counts as more symmetric or of a shorter period.
 SAME_STATE = 1e-8
@@ -59,11 +60,21 @@ def _reduced_forms(orbit: PeriodicOrbit) -> Iterator[tuple[float, Symmetry]]:
     """Yield the return times and symmetries that simpler forms may have; a time of 0 means the state itself."""
     if orbit.symmetry != Symmetry.SYNCHRONIZED and orbit.model.chain.is_mirror_symmetric:
         yield 0.0, Symmetry.SYNCHRONIZED
-    for part in _prime_factors(gcd(*orbit.stop_counts)):
+    for part in _possible_repeats(orbit):
         if orbit.symmetry != Symmetry.SYMMETRIC or part % 2:
             yield orbit.return_time / part, orbit.symmetry
     if orbit.symmetry == Symmetry.ASYMMETRIC and orbit.model.chain.is_mirror_symmetric:
         yield orbit.period / 2, Symmetry.SYMMETRIC
+
+
+def _possible_repeats(orbit: PeriodicOrbit) -> list[int]:
+    """Return the prime numbers of times that an orbit may traverse a shorter one, by its stops or velocity maxima."""
+    if any(orbit.stop_counts):
+        return _prime_factors(gcd(*orbit.stop_counts))
+    maxima = velocity_maxima(orbit.model, orbit.reference, 0.0, orbit.period)[1]
+    # A maximum at the reference is counted at neither or both ends of the period.
+    most = int(np.bincount(maxima[:, 0].astype(int)).max(initial=0)) + 1
+    return [part for part in range(2, most + 1) if _prime_factors(part) == [part]]
 
 
 def _prime_factors(number: int) -> list[int]:

@@ -1,11 +1,11 @@
 """Periodic orbits with any order of stops and starts, of any chain and friction law, stable or unstable.
 
-An orbit is represented by a reference state in the middle of its longest time without an event. There the return after
-a fixed time is smooth, whatever stops and starts lie between, so that Newton's method needs no list of events and an
-orbit may gain or lose sticks between iterations. The unknowns are all positions, the velocities of slipping blocks, and
-the return time. The equations require that the state returns (in a mirror, if the orbit is its own mirror image after
-half its period) and that corrections are perpendicular to the flow. The Jacobian comes from the tangent dynamics of the
-kernel, with the saltation at starts where friction drops.
+An orbit is represented by a reference state in the middle of its longest time without an event, or at an instant far
+from sticking if no block stops. There the return after a fixed time is smooth, whatever stops and starts lie between,
+so that Newton's method needs no list of events and an orbit may gain or lose sticks between iterations. The unknowns
+are all positions, the velocities of slipping blocks, and the return time. The equations require that the state returns
+(in a mirror, if the orbit is its own mirror image after half its period) and that corrections are perpendicular to the
+flow. The Jacobian comes from the tangent dynamics of the kernel, with the saltation at starts where friction drops.
 
 References: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493; M. di Bernardo,
 C. J. Budd, A. R. Champneys and P. Kowalczyk, "Piecewise-smooth Dynamical Systems" (Springer 2008), Section 2.5.
@@ -24,6 +24,7 @@ from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, mean_distanc
 from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine, line_along_a
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap, allowed_directions, mirror_order
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.periodic_orbits.without_stops import missing_isolation, time_to_fast_state
 from burridge_knopoff.running.runner import check_state
 from burridge_knopoff.running.settings import TIME
 from burridge_knopoff.values import instance_of
@@ -267,8 +268,18 @@ def _orbit(
 
 
 def safe_offset(orbit: PeriodicOrbit) -> float:
-    """Return the time to the middle of the longest time without events; 0 if the reference is far from events."""
+    """Return the time to the middle of the longest time without events; 0 if the reference is far from events.
+
+    Without events, the time is that to a state far from sticking.
+    """
+    if not len(orbit.event_rows):
+        return time_to_fast_state(orbit.model, orbit.reference, orbit.period)
     return _safe_offset(orbit.event_rows[:, 0].tolist(), orbit.period)
+
+
+def missing_isolation_of(orbit: PeriodicOrbit) -> str:
+    """Return why an orbit is not isolated, in words: uniform sliding, or a neutral orbit without stops; else empty."""
+    return "" if any(orbit.stop_counts) else missing_isolation(orbit.model, orbit.reference, orbit.period)
 
 
 def find_periodic_orbit(model: Model, guess: ChainState, return_time: float, symmetry: Symmetry) -> PeriodicOrbit:
@@ -277,9 +288,9 @@ def find_periodic_orbit(model: Model, guess: ChainState, return_time: float, sym
     model, guess : the model whose orbit is sought, and a state near the orbit
     return_time : approximate time of a return: the period, or half of it for SYMMETRIC
 
-    Raises OrbitError if no orbit is found on which a block stops; a uniformly sliding chain returns after any time.
-    Raises ValueError for an invalid time or symmetry, for example a mirror symmetry of a chain that is not its own
-    mirror image.
+    Raises OrbitError if no isolated orbit is found: a uniformly sliding chain returns after any time, and orbits
+    without stops under a law that is linear in speed have any amplitude. Raises ValueError for an invalid time or
+    symmetry, for example a mirror symmetry of a chain that is not its own mirror image.
 
     Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493.
 
@@ -303,15 +314,18 @@ def find_periodic_orbit(model: Model, guess: ChainState, return_time: float, sym
     mapping.end(guess, return_time)
     events = _event_rows(mapping, return_time)
     period = return_time * (2 if symmetry == Symmetry.SYMMETRIC else 1)
-    # The guess may coincide with a stop, which rounding may then place before or after it.
-    times = sorted([*events[:, 0].tolist(), return_time, period])
-    guess = flow(model, guess, _safe_offset(times, period)).state()
+    if len(events):
+        # The guess may coincide with a stop, which rounding may then place before or after it.
+        offset = _safe_offset(sorted([*events[:, 0].tolist(), return_time, period]), period)
+    else:
+        offset = time_to_fast_state(model, guess, period)
+    guess = flow(model, guess, offset).state()
     if symmetry == Symmetry.SYNCHRONIZED:
         vector = 0.5 * (guess.vector() + guess.vector()[mirror_order(model.blocks)])
         guess = ChainState(vector[: model.blocks], vector[model.blocks :], guess.stuck & guess.stuck[::-1])
     orbit = solve_return(model, guess, return_time, symmetry)
-    if not any(orbit.stop_counts):
-        raise OrbitError(f"a = {model.a!r}: no periodic orbit found near the guess: no block stops there")
+    if reason := missing_isolation_of(orbit):
+        raise OrbitError(f"a = {model.a!r}: no isolated periodic orbit found near the guess: {reason}")
     return orbit
 
 

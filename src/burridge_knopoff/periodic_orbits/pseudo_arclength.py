@@ -29,6 +29,7 @@ from burridge_knopoff.periodic_orbits.periodic import (
 )
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap, allowed_directions
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.periodic_orbits.without_stops import has_passed_sliding, is_sliding, sliding_state
 
 # Weights in the squared length along a branch, which is mostly the change of the parameter. Positions and velocities
 # are relative to v/0.1 and, like times, in the chain's own units.
@@ -57,7 +58,7 @@ class BranchOrbit:
     line : the parameter along which the branch is continued, and its unit
     length : distance from the previous orbit, along its tangent
     reduced_orbit : if the branch has reached a branch of simpler orbits, this orbit in its simpler form, more symmetric
-        or of half the period; the branch ends before it
+        or of half the period, or uniform sliding; the branch ends before it
     distance_to_grazing : length from here to the corner of the branch where the orbit grazes; NaN unless it is next
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, synchronized_orbit
@@ -223,6 +224,8 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
 
     tangent : replaces that of the point
 
+    Beyond a Hopf bifurcation `reduced_orbit` is uniform sliding.
+
     Raises OrbitError if none is found, or if the tangent turns too sharply within the step.
     """
     orbit, line = point.orbit, point.line
@@ -234,6 +237,12 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
     if tangent is point.tangent and abs(cosine) < STRAIGHT:
         raise OrbitError(f"{line.place(model)}: the branch turns too sharply within a step of {length!r}")
     following = following if cosine > 0.0 else -following
+    if not any(solution.stop_counts):
+        if is_sliding(model, solution.reference):
+            raise OrbitError(f"{line.place(model)}: a step of {length!r} ends at uniform sliding")
+        if has_passed_sliding(model, orbit.reference, solution.reference):
+            sliding = orbit_of(model, sliding_state(model), solution.return_time, orbit.symmetry)
+            return BranchOrbit(solution, following, line, length, sliding)
     offset = safe_offset(solution)
     if offset == 0.0:
         return BranchOrbit(solution, following, line, length)
