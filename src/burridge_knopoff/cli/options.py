@@ -16,7 +16,7 @@ from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.fields import FOLLOWS, REQUIRED, fields_of
 from burridge_knopoff.model.initial import OWN, PAPER_STATES, STATE_NAME, InitialState, initial_state
 from burridge_knopoff.model.model import LAW_NAME, Model
-from burridge_knopoff.model.ranges import Either, Interval, Number, OneOf, Several, TrueOrFalse, Whole
+from burridge_knopoff.model.ranges import Either, Interval, IntervalAtSpeed, Number, OneOf, Several, TrueOrFalse, Whole
 from burridge_knopoff.provenance.files import check_target
 from burridge_knopoff.running.command import CHAIN_OPTIONS
 from burridge_knopoff.values import OTHER_NUMBER, WHOLE_NUMBER
@@ -60,6 +60,12 @@ _read_named_number = _reader(
 )
 
 
+def _read_ends(text: str) -> tuple[float | str, ...]:
+    """Return the ends of an interval, of which the range checks those that are no numbers: they may be formulas."""
+    parts = [part.strip() for part in text.split(",")]
+    return tuple(float(part) if re.fullmatch(_NUMBER, part) else part for part in parts)
+
+
 def _read_strength(text: str) -> str | float | tuple[float, ...]:
     values = text if text == NEIGHBOURS or text.startswith("random=") else _read_numbers(text)
     return values[0] if isinstance(values, tuple) and len(values) == 1 else values
@@ -71,6 +77,7 @@ _READERS: dict[type, Callable[[str], Any]] = {
     Whole: read_whole,
     Several: _read_numbers,
     Interval: _read_numbers,
+    IntervalAtSpeed: _read_ends,
     Either: _read_strength,
 }
 
@@ -157,7 +164,7 @@ def add_model(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="name of the law in files (default: LAW)",
     )
-    model.add_argument("--a", required=True, type=read_number, help="friction parameter, 0 or more")
+    model.add_argument("--a", type=read_number, help="friction parameter, 0 or more; a formula without a needs none")
     add_settings(model, Chain, *CHAIN_OPTIONS)
     add_settings(model, Model, "v", "contact")
 
@@ -260,4 +267,5 @@ def model_line(model: Model) -> str:
     """Return a line that describes a model."""
     numbers: Mapping[str, float] = model.law.parameters
     parameters = "".join(f", {name} = {value:g}" for name, value in numbers.items())
-    return f"{model.law.name} law{parameters}, a = {model.a:g}, v = {model.v:g}, {model.blocks} blocks"
+    a = f", a = {model.a:g}" if model.law.has_a else ""
+    return f"{model.law.name} law{parameters}{a}, v = {model.v:g}, {model.blocks} blocks"
