@@ -1,5 +1,7 @@
 """The velocity v of the driver as the parameter, under a law without a; compared with SciPy and published numbers."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -101,6 +103,19 @@ def test_a_law_without_a_needs_none():
         find_attractors({"formula": "1 - a*u"}, samples=1)
     with pytest.raises(ValueError, match="w: unknown name, expected u$"):
         simulate({"formula": "1/(1 + w*u)"}, initial="minus")
+
+
+def test_velocities_that_a_tested_start_drops_are_told():
+    """Not those of the paper's states, which are not given, nor those of blocks that slip."""
+    given = {"name": "given", "position": [-0.9, -1.1, -1.0], "velocity": [0.1, 0.1, 0.1]}
+    short = {"start": "tested", "transient": 1, "window": 2, "lyapunov_exponents": 0}
+    with pytest.warns(UserWarning, match="start tested: .* given 2 blocks stick") as told:
+        simulate("linearized", 0.08, given, **short)
+    assert told[0].filename == __file__
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        simulate("linearized", 0.08, "minus", **short)
+        simulate("linearized", 0.08, {**given, "velocity": [0.0, 0.1, 0.0]}, **short)
 
 
 def test_velocities_below_0_need_symmetric_contact():

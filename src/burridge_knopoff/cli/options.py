@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from burridge_knopoff.laws import LAWS, Law, law_of, unknown_law
+from burridge_knopoff.laws.formula import formula_names
 from burridge_knopoff.messages import command, format_value
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.fields import FOLLOWS, REQUIRED, fields_of
@@ -229,6 +230,8 @@ def simulated_law(options: argparse.Namespace) -> Law:
         check_law_numbers(numbers)
     if options.formula is None and options.law not in LAWS:
         raise unknown_law("law", options.law, '--formula "{}"')
+    if options.a is None and (options.formula is None or "a" in formula_names(options.formula)):
+        raise ValueError("--a: missing, expected a number of at least 0")
     kind = {"law": options.law} if options.formula is None else {"formula": options.formula}
     name = options.law_name or (options.law if options.formula is None else "formula")
     return law_of(name, options.a, {**kind, **numbers})

@@ -7,7 +7,7 @@ from typing import Any
 from burridge_knopoff.library.keyword_settings import has_own_a, settings_of, show_settings, takes_model
 from burridge_knopoff.library.model_forms import GivenLaw, model_and_settings
 from burridge_knopoff.library.run import Run
-from burridge_knopoff.library.state_forms import Initial, state_blocks, state_in, warn_of_cost
+from burridge_knopoff.library.state_forms import Initial, state_blocks, state_in, warn_of_run
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.settings import Settings
@@ -68,5 +68,5 @@ def simulate(
     )
     state = state_in(model, initial)
     chosen = settings_of(Settings, settings, named)
-    warn_of_cost(model, state, chosen)
+    warn_of_run(model, state, chosen)
     return Run(**vars(run(model, state, chosen)))

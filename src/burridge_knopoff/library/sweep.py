@@ -23,7 +23,7 @@ from burridge_knopoff.library.state_forms import (
     is_list_of_states,
     named_states,
     state_blocks,
-    warn_of_cost,
+    warn_of_run,
 )
 from burridge_knopoff.messages import format_value, full_key, refusal
 from burridge_knopoff.model.chain import Chain
@@ -147,7 +147,7 @@ def sweep(
     axes |= grids[0][1]
     points = [point for base, values in grids for point in _points(base, values, states, axes, chosen)]
     costly = max(points, key=lambda point: point.model.chain.highest_rate)
-    warn_of_cost(costly.model, costly.state, chosen)
+    warn_of_run(costly.model, costly.state, chosen)
     size = min(LOCKSTEP_RUNS, -(-len(points) // cores))
 
     with progress_bar(progress, len(points), "sweep") as advance:

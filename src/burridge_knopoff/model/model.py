@@ -212,6 +212,20 @@ class Model(Unchanging):
         stuck = self.stuck_blocks(u, w, start, loading)
         return ChainState(u - self.sliding_offset, np.where(stuck, 0.0, w), stuck)
 
+    def dropped_velocities(self, initial: InitialState, start: str) -> str:
+        """Return a remark on the given velocities of blocks that stick at τ = 0, which do not count; empty if none do.
+
+        The velocities of a state of the paper are not given.
+        """
+        if start == "moving" or isinstance(initial, PaperState):
+            return ""
+        u, w = self.initial_coordinates(initial)
+        dropped = np.flatnonzero(self.stuck_blocks(u, w, start) & (w != 0.0)) + 1
+        if not len(dropped):
+            return ""
+        blocks = f"block {dropped[0]} sticks" if len(dropped) == 1 else f"{len(dropped)} blocks stick"
+        return f"start tested: in the state {initial.name} {blocks} at tau = 0, with velocity 0 in place of that given"
+
     def initial_coordinates(self, initial: InitialState) -> tuple[np.ndarray, np.ndarray]:
         """Return U(0) and U'(0) of an initial state, each of shape (blocks,); a `PaperState` follows v.
 
