@@ -21,6 +21,7 @@ from burridge_knopoff.model.random_numbers import RandomNumbers
 from burridge_knopoff.model.ranges import (
     Either,
     Interval,
+    IntervalAtSpeed,
     Named,
     Number,
     OneOf,
@@ -113,6 +114,18 @@ def config_schema() -> str:
     schema["anyOf"] = [
         {"required": ["a"], "properties": {"a": {"minItems": 1}, "grid": {"maxProperties": 0}}},
         {"required": ["grid"], "properties": {"a": {"maxItems": 0}, "grid": {"required": ["a"]}}},
+        # Laws by formulas without a need none.
+        {
+            "required": ["laws"],
+            "properties": {
+                "laws": {
+                    "additionalProperties": {
+                        "required": ["formula"],
+                        "properties": {"formula": {"not": {"pattern": r"\ba\b"}}},
+                    }
+                }
+            },
+        },
     ]
     # Only the paper's states have numbers of their own.
     states = properties["initial"]
@@ -223,6 +236,11 @@ def _(allowed: Several) -> Schema:
 @schema_of.register
 def _(allowed: Interval) -> Schema:
     return schema_of(Several(allowed.ends, 2, 2))
+
+
+@schema_of.register
+def _(allowed: IntervalAtSpeed) -> Schema:
+    return schema_of(Several(Either((allowed.ends, Text())), 2, 2))
 
 
 @schema_of.register

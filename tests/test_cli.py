@@ -196,7 +196,9 @@ def test_no_events(tmp_path):
     [
         ([], "COMMAND"),
         (["simulat"], "simulat"),
-        (["simulate"], "--a"),
+        (["simulate", "--law", "linearized", "--out", "x.nc"], "--a: "),
+        (["simulate", "--formula", "1 - a*u", "--out", "x.nc"], "--a: "),
+        (["simulate"], "--out"),
         ([*RUN], "--out"),
         ([*RUN, "--outt", "x.nc"], "--out"),
         ([*RUN, "--a", "x", "--out", "x.nc"], "--a: 'x'"),

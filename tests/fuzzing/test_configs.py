@@ -82,7 +82,7 @@ WORDS = {
     "chain.ends": ("open", "ring"),
 }
 BOXES = [f"{section}.{part}" for section in ("attractors", "chains") for part in ("position", "velocity")]
-BOXES += ["basins.first_position", "basins.last_position"]
+BOXES += ["basins.first_position", "basins.last_position", "basins.first_velocity"]
 #: Sections with names chosen by the user.
 NAMED = ("grid", "initial", "laws", "solver", "basins.a")
 
@@ -191,7 +191,7 @@ def check_study(study, written):
     for key in BOXES:
         low, high = values[key]
         assert -1e6 <= low < high <= 1e6, key
-        assert low >= 0.0 or not key.endswith("velocity"), key
+        assert low >= 0.0 or not key.endswith("velocity") or values["contact"] == "symmetric", key
     assert re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}", study.name)
     assert study.name == written["study"]
     grid = set(study.grid.values())

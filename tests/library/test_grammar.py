@@ -218,7 +218,6 @@ def test_the_name_of_a_setting_is_no_parameter_of_a_law():
         (lambda: limit_cycle(simulate(MODEL, initial="plus", **SHORT)), ("law", "formula")),
         (lambda: simulate("linearized", 0.1, mass=[1.0, 1.0, 1.2]), ("mass", "chain=Chain(…, mass=…)")),
         (lambda: simulate("linearized", 0.1, ends="ring"), ("ends: 'ring'", "chain=Chain(…, ends=…)")),
-        (lambda: basin_map("linearized", 0.1, ([-0.9], [0.1])), ("blocks: 1", "U_N(0)")),
         (lambda: edge_state("linearized", 0.1, "minus", "plus", [], duration=-1.0), ("duration: -1.0",)),
         (lambda: sweep(["stribeck", "linearized"], 0.1, sigma=[0.1, 0.2]), ("law = 'linearized': sigma",)),
     ],

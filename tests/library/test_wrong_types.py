@@ -197,7 +197,7 @@ FORMULAS = {
     "Model.check_directions",
 }
 TYPES = ("float", "int", "bool", "Any")
-INTERVALS = [("basin_map", "first_position"), ("basin_map", "last_position")]
+INTERVALS = [("basin_map", name) for name in ("first_position", "last_position", "first_velocity")]
 INTERVALS += [(name, "interval") for name in ("follow", "follow_bifurcation", "hopf_bifurcations")]
 
 

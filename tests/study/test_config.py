@@ -55,6 +55,24 @@ def test_numbers_outside_their_range_get_one_line(key):
 
 
 @pytest.mark.parametrize("case", [name for name in BAD_FILES if name != "template"])
+def test_a_study_of_laws_without_a_needs_none():
+    """Over one value, or over other parameters; a law with a needs it."""
+    config = {
+        "study": "belt",
+        "laws": {"own": {"formula": "mud + (1 - mud)*exp(-u)", "mud": 0.5}},
+        "initial": {"x": {"position": 0, "velocity": -0.5}},
+        "chain": {"blocks": 1},
+        "contact": "symmetric",
+        "attractors": {"velocity": ["v - 2", "v"]},
+    }
+    study = load_study(config, "belt.yaml")
+    assert (study.blocks, [*study.grid.values()]) == (1, [0.0])
+    grid = {**config, "grid": {"v": [0.5, 1.0]}}
+    assert load_study(grid, "belt.yaml").other_values == [{"v": 0.5}, {"v": 1.0}]
+    with refused("belt.yaml: a", error=ConfigError):
+        load_study({**config, "laws": {**config["laws"], "linearized": {}}}, "belt.yaml")
+
+
 def test_bad_files_get_one_line(tmp_path, case):
     content, words = BAD_FILES[case]
     path = tmp_path / "study.yaml"

@@ -24,6 +24,7 @@ GOOD = {"study": "test", "a": [0.08], "initial": {"minus": {}}}
 #: What only the package refuses: NaN, a line break at the end of a text, the order of two numbers, an unreadable file,
 #: and a key that is not a text, which no file can have.
 BEYOND_A_SCHEMA = ("got nan", r"got 'x\n'", "low < high", "at least low", "cannot be read", "initial: got 1,")
+BEYOND_A_SCHEMA += ("or a formula of v: ",)
 
 
 def range_error(config):

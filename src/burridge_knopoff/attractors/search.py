@@ -164,8 +164,7 @@ class Search(Convergence):
     def starts(self, initial: Sequence[InitialState | ChainState], start: str) -> list[ChainState]:
         """Return the states at τ = 0 of the drawn initial states, followed by the given ones."""
         settings = self.settings
-        box = settings.position, settings.velocity
-        drawn = sample_initial_states(self.model.blocks, settings.samples, *box, settings.seed)
+        drawn = sample_initial_states(self.model.blocks, settings.samples, *settings.box(self.model), settings.seed)
         return [
             state if isinstance(state, ChainState) else self.model.begin(state, start) for state in (*drawn, *initial)
         ]

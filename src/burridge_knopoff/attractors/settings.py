@@ -6,10 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
+import numpy as np
+
 from burridge_knopoff.model.fields import check_fields, settings
+from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.random_numbers import SEED
 from burridge_knopoff.model.ranges import Number, Whole
-from burridge_knopoff.model.sampling import POSITION, POSITIONS, VELOCITIES, VELOCITY
+from burridge_knopoff.model.sampling import POSITION, POSITIONS, VELOCITIES, VELOCITY_AT_SPEED
 from burridge_knopoff.running.settings import TIME
 
 
@@ -38,7 +41,11 @@ class SearchSettings:
     ] = 0.02
     seed: Annotated[int, SEED, "seed of all random numbers of the search"] = 1
     position: Annotated[Sequence[float], POSITION, "range of the random U_i(0) of all blocks"] = POSITIONS
-    velocity: Annotated[Sequence[float], VELOCITY, "range of the random U_i'(0) of all blocks"] = VELOCITIES
+    velocity: Annotated[
+        Sequence[float | str],
+        VELOCITY_AT_SPEED,
+        "range of the random U_i'(0) of all blocks; below 0 only under contact symmetric",
+    ] = VELOCITIES
     transient: Annotated[
         float, TIME, "time after which a motion may count as settled; extended automatically where it settles slowly"
     ] = 3000.0
@@ -70,6 +77,15 @@ class SearchSettings:
 
     def __post_init__(self) -> None:
         check_fields(self)
+
+    def box(self, model: Model) -> tuple[Sequence[float], Sequence[float]]:
+        """Return the ranges of the random U_i(0) and U_i'(0) for a model.
+
+        Raises ValueError, one line, for velocities below 0 under one-sided contact.
+        """
+        velocity = VELOCITY_AT_SPEED.at(self.velocity, model.v, "velocity")
+        model.check_directions(np.array(velocity), "velocity")
+        return self.position, velocity
 
     @property
     def label_limit(self) -> float:

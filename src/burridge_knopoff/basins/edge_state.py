@@ -194,7 +194,7 @@ def edge_state(
             return _measure(track, orbit, settings)
         except LabelError:
             continue
-    raise OrbitError(f"a = {model.a:.12g}: the boundary is lost: states near it change their labels")
+    raise OrbitError(f"{model.place}: the boundary is lost: states near it change their labels")
 
 
 def _narrow(attractor: Attractor, share: float) -> Attractor:

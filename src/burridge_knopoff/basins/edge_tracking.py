@@ -191,7 +191,7 @@ class EdgeTrack:
             if not any(self._narrow(share * self.time_limit) for share in PROMPT):
                 raise OrbitError(
                     f"time_limit: got {self.time_limit:g}, by which no state between the basins reaches an attractor, "
-                    f"expected more (a = {self.model.a:.12g})"
+                    f"expected more ({self.model.place})"
                 )
 
     def _narrow(self, time_limit: float) -> bool:
@@ -252,12 +252,12 @@ class EdgeTrack:
                 # Both states reach the same attractor, in contradiction to their labels.
                 raise LabelError
             if any(solver.run(clock) != Status.COMPLETED for solver in (runner, other)):
-                raise OrbitError(f"a = {self.model.a:.12g}: the run ends at τ = {clock:g} on the boundary")
+                raise OrbitError(f"{self.model.place}: the run ends at τ = {clock:g} on the boundary")
             self.first, self.second = runner.state(), other.state()
             distance, steps = self._distance(self.first, self.second), steps + 1
             if steps == ORTHONORMALIZED or distance >= SEPARATED_DISTANCE:
                 if reason := missing_derivative(runner):
-                    raise OrbitError(f"a = {self.model.a:.12g}: on the boundary {reason}: no exponents")
+                    raise OrbitError(f"{self.model.place}: on the boundary {reason}: no exponents")
                 self._basis, triangle = np.linalg.qr(runner.perturbations)
                 runner.carry(self._basis)
                 size = np.abs(np.diag(triangle))

@@ -105,8 +105,8 @@ def _draw_states(search: Search, start: str, first: int, count: int) -> tuple[np
     """Return `count` drawn states from number `first` on: x_i, U_i' and stuck blocks, each of shape (count, blocks)."""
     settings, model = search.settings, search.model
     seed = seed_at(settings.seed, model.a)
-    box = settings.position, settings.velocity
-    position, velocity = (part[first:] for part in sample_states(model.blocks, first + count, *box, seed))
+    drawn = sample_states(model.blocks, first + count, *settings.box(model), seed)
+    position, velocity = (part[first:] for part in drawn)
     stuck = model.stuck_blocks(position, velocity, start)
     return position - model.sliding_offset, np.where(stuck, 0.0, velocity), stuck
 

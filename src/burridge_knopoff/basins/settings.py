@@ -6,11 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
+import numpy as np
+
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.initial import PAPER_STATES, InitialState
+from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.random_numbers import SEED
 from burridge_knopoff.model.ranges import Number, Several, Whole
-from burridge_knopoff.model.sampling import POSITION, POSITIONS, SAMPLES
+from burridge_knopoff.model.sampling import POSITION, POSITIONS, SAMPLES, VELOCITIES
 from burridge_knopoff.running.settings import TIME
 from burridge_knopoff.values import instance_of
 
@@ -18,7 +21,7 @@ from burridge_knopoff.values import instance_of
 @settings
 @dataclass(frozen=True)
 class BasinSettings:
-    """A map of basins over U_1(0) and U_N(0): the config's section `basins`, without the values of a.
+    """A map of basins over U_1(0) and U_N(0), or U(0) and U'(0) of one block: the config's section `basins`, without a.
 
     initial : the state with all other positions and velocities
 
@@ -29,6 +32,9 @@ class BasinSettings:
     initial: InitialState = PAPER_STATES["minus"]
     first_position: Annotated[Sequence[float], POSITION, "range of U_1(0)"] = POSITIONS
     last_position: Annotated[Sequence[float], POSITION, "range of U_N(0)"] = POSITIONS
+    first_velocity: Annotated[
+        Sequence[float], POSITION, "range of U_1'(0), in place of U_N(0), in the map of one block"
+    ] = VELOCITIES
     pairs: Annotated[
         int,
         Whole(0, 10_000_000),
@@ -48,6 +54,16 @@ class BasinSettings:
         instance_of(self.initial, InitialState, "initial")
         if self.tiles > self.pixels:
             raise ValueError(f"tiles: got {self.tiles}, expected at most the {self.pixels} rows of a map")
+
+    def rows(self, model: Model) -> tuple[str, Sequence[float]]:
+        """Return the name and the range of the second axis of a map; the first one is that of U_1(0).
+
+        Raises ValueError, one line, for velocities below 0 under one-sided contact.
+        """
+        if model.blocks > 1:
+            return "last_position", self.last_position
+        model.check_directions(np.array(self.first_velocity), "first_velocity")
+        return "first_velocity", self.first_velocity
 
 
 @settings

@@ -23,8 +23,11 @@ from burridge_knopoff.messages import format_value
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MotionSettings
 
-DESCRIPTION = """Map the attractor reached from each state in a plane of initial states, over U_1(0) and U_N(0).
-The initial state gives all other positions and velocities. Attractors are searched for first, as by `bk attractors`."""
+PLANE = ("pixels", "first_position", "last_position", "first_velocity", "threads")
+
+DESCRIPTION = """Map the attractor reached from each state in a plane of initial states, over U_1(0) and U_N(0), or
+over U_1(0) and U_1'(0) of one block. The initial state gives all other positions and velocities. Attractors are
+searched for first, as by `bk attractors`."""
 
 EXAMPLES = """  bk basins --law linearized --a 0.08 --pixels 32 --out basins.nc --attractors-out attractors.nc
   bk basins --law linearized --a 0.08 --pixels 16 --first-position -1,0 --last-position -1,0 --samples 40
@@ -37,7 +40,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_state(parser, "minus")
     plane = parser.add_argument_group("map")
     # Fewer pixels and samples than in a study, like `basin_map`.
-    add_settings(plane, BasinSettings, "pixels", "first_position", "last_position", "threads", pixels=64)
+    add_settings(plane, BasinSettings, *PLANE, pixels=64)
     add_search(parser, samples=100)
     out = parser.add_argument_group("files")
     out.add_argument("--out", metavar="FILE", help="write the map as netCDF, in the form of basins.nc")
@@ -59,9 +62,9 @@ def run(options: argparse.Namespace) -> int:
         raise ValueError(
             f"--attractors-out: got {format_value(attractors_out)}, expected another file: --out writes the map there"
         )
-    state = state_of(options) or PAPER_STATES["minus"]
-    model = model_of(options, state)
-    plane = {key: getattr(options, key) for key in ("pixels", "first_position", "last_position", "threads", "start")}
+    state = state_of(options)
+    model = model_of(options, state or PAPER_STATES["minus"])
+    plane = {key: getattr(options, key) for key in (*PLANE, "start")}
     search = asdict(search_of(options)) | {"fraction_width": 0.1}
     motion = settings_of(MotionSettings, options)
     basins, attractors = burridge_knopoff.basin_map(model, None, state, **plane, **search, motion=motion)
@@ -69,9 +72,10 @@ def run(options: argparse.Namespace) -> int:
     slots = attractors.isel(law=0, a=0)
     reached = zip(slots["branch"].values.tolist(), slots["side"].values.tolist(), strict=True)
     shares = [f"{100 * ((branch == number) & (side == of)).mean():.2f} %" for number, of in reached]
-    first, last = ("{:g} to {:g}".format(*getattr(options, f"{end}_position")) for end in ("first", "last"))
+    row, axis = ("last_position", f"U_{model.blocks}(0)") if model.blocks > 1 else ("first_velocity", "U_1'(0)")
+    first, last = ("{:g} to {:g}".format(*getattr(options, key)) for key in ("first_position", row))
     pixels = options.pixels
-    print_lines(f"{model_line(model)}: {pixels} x {pixels} states, U_1(0) {first}, U_{model.blocks}(0) {last}", "")
+    print_lines(f"{model_line(model)}: {pixels} x {pixels} states, U_1(0) {first}, {axis} {last}", "")
     print_lines(*attractor_table(attractors, {"of the plane": shares}))
     print_lines("", f"undetermined: {100 * (branch < 0).mean():.2f} % of the plane")
     for path, dataset in ((out, basins), (attractors_out, attractors)):

@@ -11,12 +11,13 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from burridge_knopoff.laws import LAWS, Law, law_of, unknown_law
+from burridge_knopoff.laws.formula import formula_names
 from burridge_knopoff.messages import command, format_value
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.fields import FOLLOWS, REQUIRED, fields_of
 from burridge_knopoff.model.initial import OWN, PAPER_STATES, STATE_NAME, InitialState, initial_state
 from burridge_knopoff.model.model import LAW_NAME, Model
-from burridge_knopoff.model.ranges import Either, Interval, Number, OneOf, Several, TrueOrFalse, Whole
+from burridge_knopoff.model.ranges import Either, Interval, IntervalAtSpeed, Number, OneOf, Several, TrueOrFalse, Whole
 from burridge_knopoff.provenance.files import check_target
 from burridge_knopoff.running.command import CHAIN_OPTIONS
 from burridge_knopoff.values import OTHER_NUMBER, WHOLE_NUMBER
@@ -60,6 +61,12 @@ _read_named_number = _reader(
 )
 
 
+def _read_ends(text: str) -> tuple[float | str, ...]:
+    """Return the ends of an interval, of which the range checks those that are no numbers: they may be formulas."""
+    parts = [part.strip() for part in text.split(",")]
+    return tuple(float(part) if re.fullmatch(_NUMBER, part) else part for part in parts)
+
+
 def _read_strength(text: str) -> str | float | tuple[float, ...]:
     values = text if text == NEIGHBOURS or text.startswith("random=") else _read_numbers(text)
     return values[0] if isinstance(values, tuple) and len(values) == 1 else values
@@ -71,6 +78,7 @@ _READERS: dict[type, Callable[[str], Any]] = {
     Whole: read_whole,
     Several: _read_numbers,
     Interval: _read_numbers,
+    IntervalAtSpeed: _read_ends,
     Either: _read_strength,
 }
 
@@ -157,7 +165,7 @@ def add_model(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="name of the law in files (default: LAW)",
     )
-    model.add_argument("--a", required=True, type=read_number, help="friction parameter, 0 or more")
+    model.add_argument("--a", type=read_number, help="friction parameter, 0 or more; a formula without a needs none")
     add_settings(model, Chain, *CHAIN_OPTIONS)
     add_settings(model, Model, "v", "contact")
 
@@ -222,6 +230,8 @@ def simulated_law(options: argparse.Namespace) -> Law:
         check_law_numbers(numbers)
     if options.formula is None and options.law not in LAWS:
         raise unknown_law("law", options.law, '--formula "{}"')
+    if options.a is None and (options.formula is None or "a" in formula_names(options.formula)):
+        raise ValueError("--a: missing, expected a number of at least 0")
     kind = {"law": options.law} if options.formula is None else {"formula": options.formula}
     name = options.law_name or (options.law if options.formula is None else "formula")
     return law_of(name, options.a, {**kind, **numbers})
@@ -260,4 +270,5 @@ def model_line(model: Model) -> str:
     """Return a line that describes a model."""
     numbers: Mapping[str, float] = model.law.parameters
     parameters = "".join(f", {name} = {value:g}" for name, value in numbers.items())
-    return f"{model.law.name} law{parameters}, a = {model.a:g}, v = {model.v:g}, {model.blocks} blocks"
+    a = f", a = {model.a:g}" if model.law.has_a else ""
+    return f"{model.law.name} law{parameters}{a}, v = {model.v:g}, {model.blocks} blocks"

@@ -51,9 +51,13 @@ def run(options: argparse.Namespace) -> int:
     state = state_of(options) or PAPER_STATES["minus"]
     settings = settings_of(Settings, options)
     model = model_of(options, state)
-    trajectory = simulate_point(
-        model, state, settings, options.out, lambda words: print_lines(f"note: bk simulate: {words}", file=sys.stderr)
-    )
+
+    def note(words: str) -> None:
+        print_lines(f"note: bk simulate: {words}", file=sys.stderr)
+
+    if remark := model.dropped_velocities(state, settings.start):
+        note(remark)
+    trajectory = simulate_point(model, state, settings, options.out, note)
     if trajectory.status != "completed":
         return EXIT_CODE
     print_lines(f"{options.out}: {outcome(trajectory)}")

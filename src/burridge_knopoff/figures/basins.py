@@ -24,9 +24,10 @@ CATEGORY = "Attractors"
 INPUTS = ("basins", "attractors")
 FROM_STUDY = ("marked_states",)
 CAPTION = """\
-Basins of attraction in the plane of the initial positions U_1(0) and U_N(0) of the end blocks. Each pixel has the
-colour of the branch that its state reaches. Where the motions of a branch are mirror images of each other, its number
-has + or −, and − has a lighter shade. The study's initial states in this plane are marked with their names.
+Basins of attraction in the plane of the initial positions U_1(0) and U_N(0) of the end blocks, or, for one block, of
+its initial position and velocity. Each pixel has the colour of the branch that its state reaches. Where the motions of
+a branch are mirror images of each other, its number has + or −, and − has a lighter shade. The study's initial states
+in this plane are marked with their names.
 """
 
 COLUMNS = 2
@@ -37,7 +38,7 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset | None, marked_state
     """Draw each map in the colours of the branches reached: mirror images in a lighter shade, undetermined in black.
 
     attractors : without them, the branches are ranked by their pixels for the colours
-    marked_states : U_1(0) and U_N(0), by name, of the initial states in the plane of the maps, shape (2,), or (maps, 2)
+    marked_states : coordinates, by name, of the initial states in the plane of the maps, shape (2,), or (maps, 2)
         if they differ between maps
     """
     count = basins.sizes["map"]
@@ -108,7 +109,8 @@ def _in_order(patches: Mapping[tuple[int, int], Patch]) -> list[Patch]:
 
 
 def _extent(basins: xarray.Dataset) -> tuple[float, float, float, float]:
-    return *basins.attrs["first_range"], *basins.attrs["last_range"]
+    rows = "last_range" if "last_position" in basins.dims else "velocity_range"
+    return *basins.attrs["first_range"], *basins.attrs[rows]
 
 
 def _title(basin_map: xarray.Dataset) -> str:
@@ -124,7 +126,8 @@ def _map(panel: Axes, basin_map: xarray.Dataset, colors: Mapping[int, str]) -> d
         patches[part.branch, -part.side] = Patch(facecolor=part.color, edgecolor="0.3", linewidth=0.4, label=part.name)
     panel.imshow(picture, origin="lower", extent=_extent(basin_map), interpolation="nearest", aspect="auto")
     panel.set_box_aspect(1.0)
-    panel.set(xlabel="$U_1(0)$", ylabel=f"$U_{{{basin_map.attrs['plane_position'].size}}}(0)$")
+    blocks = np.size(basin_map.attrs["plane_position"])
+    panel.set(xlabel="$U_1(0)$", ylabel=f"$U_{{{blocks}}}(0)$" if blocks > 1 else "$U_1'(0)$")
     return patches
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray
 
+from burridge_knopoff.dataset.point import has_a
 from burridge_knopoff.dataset.variables import TIMES
 from burridge_knopoff.laws import LAWS
 from burridge_knopoff.model.chain import Chain
@@ -42,7 +43,7 @@ def model_title(model: Model, axes: Collection[str] = ()) -> str:
 
     axes : names of the parameters on the axes of the picture, which are left out
     """
-    numbers = {"a": model.a, "v": model.v, **model.law.parameters}
+    numbers = {**({"a": model.a} if model.law.has_a else {}), "v": model.v, **model.law.parameters}
     numbers |= {name: getattr(model.chain, name) for name in CHAIN_PARAMETERS}
     return ", ".join([f"{model.law.name} law", *_words(numbers, [model.law.defaults], axes)])
 
@@ -63,6 +64,8 @@ def fixed_numbers(data: xarray.Dataset, axes: Collection[str] = ()) -> list[str]
             numbers.pop(name, None)
         elif item.dtype.kind == "f" and key not in _OF_RUNS and {*item.dims} <= {key}:
             numbers[name] = item.item()
+    if not has_a(data.attrs):
+        numbers.pop("a", None)
     laws = np.atleast_1d(constant(data, "law")).tolist()
     return _words(numbers, [LAWS[law].defaults if law in LAWS else {} for law in laws], axes)
 

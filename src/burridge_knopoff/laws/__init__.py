@@ -26,8 +26,8 @@ LAWS: Mapping[str, type[Law]] = {
 }
 
 
-def law_of(name: str, a: float, description: Mapping[str, Any] | None = None, **parameters: Any) -> Law:
-    """Return a friction law by name, at a value of a.
+def law_of(name: str, a: float | None = None, description: Mapping[str, Any] | None = None, **parameters: Any) -> Law:
+    """Return a friction law by name, at a value of a, which a formula without a does not need.
 
     parameters : those of the law other than a, such as sigma
     description : the same as a mapping, as in a config: for a law given by a formula, `formula` and its parameters; for

@@ -43,6 +43,15 @@ def compile_formula(formula: str, values: Mapping[str, float]) -> Tape:
         raise FormulaError("a constant term is not finite") from None
 
 
+def formula_value(formula: str, values: Mapping[str, float]) -> float:
+    """Return the value of a formula in which every name has a value; raises FormulaError as `compile_formula` does."""
+    names = {key: number(x) for key, x in values.items()}
+    try:
+        return float(_Reader(Builder(), formula.strip(), names).read(_tree(formula)).shift)
+    except (OverflowError, ZeroDivisionError):
+        raise FormulaError("a term is not finite") from None
+
+
 @lru_cache(maxsize=64)
 def _tree(formula: str) -> ast.Expression:
     """Return the syntax tree of a formula, which is not to be changed; raises FormulaError for wrong syntax."""
@@ -77,7 +86,7 @@ class _Reader:
             case ast.Name(id=name) if name in self.names:
                 return self.names[name]
             case ast.Name(id=name):
-                raise FormulaError(f"{cut(name)}: unknown name; u is the slip speed U', a the friction parameter")
+                raise FormulaError(f"{cut(name)}: unknown name, expected {' | '.join(self.names)}")
             case ast.UnaryOp(op=ast.UAdd(), operand=operand):
                 return self.read(operand)
             case ast.UnaryOp(op=ast.USub(), operand=operand):

@@ -35,7 +35,7 @@ _SPEEDS = np.linspace(0.0, MAX_SPEED, 4 * SAMPLES + 1)
 class Law(Unchanging):
     """Base class of all laws: friction Φ on a block slipping at speed U', as a fraction of its static friction.
 
-    a : friction parameter, at least 0
+    a : friction parameter, at least 0; None for a formula without a
     name : name of the law in a study and in its files; by default the name of its module
     parameters : values of the other parameters in the formula; by default those of the class
 
@@ -62,18 +62,20 @@ class Law(Unchanging):
     #: Maximum length of the formula in characters.
     max_length: ClassVar[int] = 400
 
-    def __init__(self, a: float, /, *, name: str = "", **parameters: float) -> None:
+    def __init__(self, a: float | None = None, /, *, name: str = "", **parameters: float) -> None:
         self.name = name or type(self).__module__.rpartition(".")[2]
         for key in parameters.keys() - self.defaults.keys():
             allowed = " | ".join(self.defaults) or "none"
             raise ValueError(f"{full_key(self.name, key)}: not a parameter of this law, expected {allowed}")
         self._set(a, {**self.defaults, **parameters})
 
-    def _set(self, a: float, parameters: Mapping[str, float]) -> None:
+    def _set(self, a: float | None, parameters: Mapping[str, float]) -> None:
         for key in ("formula", "text"):
             if key not in vars(self) and not hasattr(type(self), key):
                 raise ValueError(f"{self.name}.{key}: missing, expected a text")
         names = formula_names(self.formula)
+        if a is None and "a" not in names:
+            a = 0.0
         for key in parameters:
             if key in ("a", "u"):
                 place = full_key(self.name, key)
@@ -91,8 +93,9 @@ class Law(Unchanging):
         try:
             self._check()
         except FormulaError as error:
+            at = f" at a = {self.a:g}" if self.has_a else ""
             raise ValueError(
-                f"{self.name}: got {format_value(self.formula)} at a = {self.a:g}, expected a friction law: {error}"
+                f"{self.name}: got {format_value(self.formula)}{at}, expected a friction law: {error}"
             ) from None
 
     def _check(self) -> None:
@@ -118,7 +121,13 @@ class Law(Unchanging):
 
     def __repr__(self) -> str:
         parameters = "".join(f", {key}={value!r}" for key, value in self.parameters.items())
-        return f"<law {self.name}: {self.formula}, a={self.a!r}{parameters}>"
+        a = f", a={self.a!r}" if self.has_a else ""
+        return f"<law {self.name}: {self.formula}{a}{parameters}>"
+
+    @property
+    def has_a(self) -> bool:
+        """Whether the formula contains the friction parameter a; `a` is without meaning if not, and mostly 0."""
+        return "a" in formula_names(self.formula)
 
     @property
     def parameters(self) -> Mapping[str, float]:
@@ -144,7 +153,7 @@ class Law(Unchanging):
     @cached_property
     def tape(self) -> Tape:
         """The operations that compute Φ and its slope from a speed."""
-        return compile_formula(self.formula, {"a": self.a, **self.parameters})
+        return compile_formula(self.formula, {**({"a": self.a} if self.has_a else {}), **self.parameters})
 
     def __call__(self, speed: ArrayLike) -> np.ndarray:
         """Return Φ at speeds U' ≥ 0, elementwise."""
@@ -190,6 +199,8 @@ class Law(Unchanging):
 class FormulaLaw(Law):
     """A law given by its formula, with a name and values for all names in the formula except `a` and `u`.
 
+    a : None if the formula has no a
+
     Raises ValueError as `Law` does, and for syntax that is not allowed in a formula.
 
     A formula may contain numbers, parentheses, `+`, `-`, `*`, `/`, `**`, exp, log, sqrt and tanh; u is the speed U'.
@@ -200,7 +211,7 @@ class FormulaLaw(Law):
     (<law power: 1/(1 + a*u)**p, a=0.04, p=2.0>, 0.6944)
     """
 
-    def __init__(self, a: float, formula: str, /, *, name: str = "formula", **parameters: float) -> None:
+    def __init__(self, a: float | None, formula: str, /, *, name: str = "formula", **parameters: float) -> None:
         self.name = name
         self.formula = instance_of(formula, str, "formula")
         self._set(a, parameters)

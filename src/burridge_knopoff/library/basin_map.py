@@ -12,8 +12,9 @@ from burridge_knopoff.library.keyword_settings import settings_of, show_settings
 from burridge_knopoff.library.model_forms import GivenLaw, model_and_settings
 from burridge_knopoff.library.state_forms import Initial, initial_numbers, state_blocks
 from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.initial import OWN, InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.model.sampling import POSITIONS
+from burridge_knopoff.model.sampling import POSITIONS, VELOCITIES
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 
 if TYPE_CHECKING:
@@ -25,11 +26,12 @@ if TYPE_CHECKING:
 def basin_map(
     law: Model | GivenLaw,
     a: Any = None,
-    initial: Initial = "minus",
+    initial: Initial | None = None,
     *,
     pixels: int = 64,
     first_position: Sequence[float] = POSITIONS,
     last_position: Sequence[float] = POSITIONS,
+    first_velocity: Sequence[float] = VELOCITIES,
     chain: Chain | None = None,
     blocks: int | None = None,
     v: float | None = None,
@@ -44,19 +46,20 @@ def basin_map(
     """Return a basin map of one model and its attractors, in the form of `basins.nc` and `attractors.nc`.
 
     law, a, chain, blocks, v, contact : as for `simulate`
-    initial : the positions and velocities except U_1(0) and U_N(0), in any form that `simulate` takes; minus has three
-        blocks
+    initial : the positions and velocities except U_1(0) and U_N(0), in any form that `simulate` takes; by default
+        minus, which has three blocks. The map of one block, over U_1(0) and U_1'(0), needs none
     start : moving or tested, see `Model.begin`
     pixels : along each axis; first_position, last_position : ranges [low, high] of U_1(0) and U_N(0)
+    first_velocity : range of U_1'(0), for one block
     samples, seed : initial states of the search for attractors; an attractor that none of them reaches is not found,
         and its basin is undetermined (−1)
     threads : number of threads; the map does not depend on it
     by_name : other settings of `SearchSettings`, and parameters of the model as for `simulate`
     motion : how kinds of motion are classified
 
-    The map `branch` of the first Dataset has shape (1, pixels, pixels), with U_N(0) along the rows. The uncertainty
-    exponent is NaN, since no pairs of states are followed. Raises ValueError, one line, for a wrong argument, and if no
-    attractor is found.
+    The map `branch` of the first Dataset has shape (1, pixels, pixels); each row has one U_N(0), or U_1'(0). The
+    uncertainty exponent is NaN, since no pairs of states are followed. Raises ValueError, one line, for a wrong
+    argument, and if no attractor is found.
 
     >>> from burridge_knopoff import basin_map
     >>> basins, attractors = basin_map("linearized", 0.08, pixels=4, samples=12, transient=500, window=500)
@@ -77,10 +80,10 @@ def basin_map(
         chain=chain,
         blocks=blocks,
         contact=contact,
-        state_blocks=state_blocks(initial),
+        state_blocks=3 if initial is None else state_blocks(initial),
     )
-    if model.blocks < 2:
-        raise ValueError("blocks: got 1, expected at least 2, since a map has the axes U_1(0) and U_N(0)")
+    if initial is None:
+        initial = InitialState(OWN, 0.0, 0.0) if model.blocks == 1 else "minus"
     state = initial_numbers(model, initial)
     # The map itself shows the basin fractions.
     options = {"samples": samples, "seed": seed, "fraction_width": 0.1, **search}
@@ -90,10 +93,12 @@ def basin_map(
         initial=state,
         first_position=first_position,
         last_position=last_position,
+        first_velocity=first_velocity,
         pairs=0,
         tiles=1,
         threads=threads,
     )
+    plane.rows(model)
     attractors, candidates = coexisting_attractors(model, settings, motion, starts=[state], start=start)
     tile = basin_summary.tile(candidates, 0, plane, settings.label_limit, start)
     pairs = basin_summary.pairs(candidates, plane, settings.label_limit, settings.seed, start)

@@ -92,7 +92,8 @@ def continue_attractors(
 
     base, axes = parameter_grid(law, parameters, shape, SearchSettings, reserved_names())
     if len(axes) != 1:
-        raise ValueError(f"a: got {len(axes)} parameters with several values, expected one, a or another")
+        name = base.parameter_names[0]
+        raise ValueError(f"{name}: got {len(axes)} parameters with several values, expected one, {name} or another")
     states = [initial_numbers(base, state, f"starts[{number}]") for number, state in enumerate(given)]
     ((parameter, values),) = axes.items()
     values.sort()

@@ -9,6 +9,7 @@ from functools import wraps
 from typing import Any, TypeVar
 
 from burridge_knopoff.laws import Law
+from burridge_knopoff.laws.formula import formula_names
 from burridge_knopoff.messages import full_key, suggestion
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import Model
@@ -36,11 +37,17 @@ def takes_model(function: _F) -> _F:
                     f"{name}: got a parameter of the law with the name of a setting, expected another name"
                 )
         if len(arguments) > 1:
-            has_a = "a" not in by_name and _can_be_a(arguments[1], isinstance(arguments[0], Model | Law))
+            has_a = "a" not in by_name and _can_be_a(arguments[1], has_own_a(arguments[0]))
             arguments = arguments if has_a else (arguments[0], by_name.pop("a", None), *arguments[1:])
         return function(*arguments, **by_name)
 
     return call  # type: ignore[return-value]
+
+
+def has_own_a(law: Any) -> bool:
+    """Return whether a law needs no a beside it: a `Model`, a `Law`, or a formula without a."""
+    is_formula = isinstance(law, Mapping) and isinstance(law.get("formula"), str)
+    return isinstance(law, Model | Law) or (is_formula and "a" not in formula_names(law["formula"]))
 
 
 def _numbers(law: Any) -> set[str]:

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Any
 
 from burridge_knopoff.laws import LAWS, Law, law_of, unknown_law
-from burridge_knopoff.library.keyword_settings import divide
+from burridge_knopoff.library.keyword_settings import divide, has_own_a
 from burridge_knopoff.messages import format_value, full_key, suggestion
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
@@ -92,7 +92,7 @@ def _law_at(law: GivenLaw, a: float | None, numbers: Mapping[str, Any], settings
         return law.at(a, **numbers)
     if not isinstance(law, str | Mapping):
         raise unknown_law("law", law, '{{"formula": "{}"}}')
-    if a is None:
+    if a is None and not has_own_a(law):
         raise ValueError("a: got None without a Model or a Law, expected a number of at least 0")
     if isinstance(law, Mapping):
         return law_of(law.get("law", "formula"), a, {**law, **numbers})

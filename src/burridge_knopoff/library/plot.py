@@ -107,7 +107,7 @@ def _dataset_drawing(data: xarray.Dataset, attractors: xarray.Dataset | None) ->
     """Return the function that draws a Dataset, a map with its attractors if they are there; None for another one."""
     from burridge_knopoff.figures import basins, coexisting_attractors, motion, sweep
 
-    if {"first_position", "last_position"} <= {*data.dims} and "branch" in data:
+    if "first_position" in data.dims and "branch" in data:
         maps = data if "map" in data.dims else data.expand_dims("map")
         if maps.sizes["map"] > 1:
             return _without_axes(partial(basins.draw, maps, attractors, {}))
@@ -141,6 +141,8 @@ def _without_axes(draw: Callable[[], Figure]) -> Callable[[Axes | None], Figure]
 
 def _paper_states(basins: xarray.Dataset) -> dict[str, np.ndarray]:
     """Return U_1(0) and U_N(0) of the paper's initial states that lie in the plane of a map, by name."""
+    if "last_position" not in basins.dims:
+        return {}
     position, velocity = (basins.attrs[f"plane_{name}"] for name in ("position", "velocity"))
     states = {name: state.coordinates(3) for name, state in PAPER_STATES.items()}
     return {

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from burridge_knopoff.laws import Law
-from burridge_knopoff.library.keyword_settings import settings_of, show_settings, takes_model
+from burridge_knopoff.library.keyword_settings import has_own_a, settings_of, show_settings, takes_model
 from burridge_knopoff.library.model_forms import GivenLaw, model_and_settings
 from burridge_knopoff.library.run import Run
-from burridge_knopoff.library.state_forms import Initial, state_blocks, state_in, warn_of_cost
+from burridge_knopoff.library.state_forms import Initial, state_blocks, state_in, warn_of_run
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.settings import Settings
@@ -62,12 +61,12 @@ def simulate(
     >>> longer.begin_time, longer.end_time
     (10000.0, 10100.0)
     """
-    if not isinstance(law, Model | Law) and a is None:
+    if a is None and not has_own_a(law):
         a = 0.08
     model, named = model_and_settings(
         Settings, law, a, by_name, v=v, chain=chain, blocks=blocks, contact=contact, state_blocks=state_blocks(initial)
     )
     state = state_in(model, initial)
     chosen = settings_of(Settings, settings, named)
-    warn_of_cost(model, state, chosen)
+    warn_of_run(model, state, chosen)
     return Run(**vars(run(model, state, chosen)))

@@ -157,9 +157,14 @@ def begun_state(
     return state if isinstance(state, ChainState) else model.begin(state, start, loading)
 
 
-def warn_of_cost(model: Model, initial: InitialState | ChainState, settings: Settings) -> None:
-    """Warn of a run of more than a minute whose step is set by stiff dashpots or springs, before it starts."""
+def warn_of_run(model: Model, initial: InitialState | ChainState, settings: Settings) -> None:
+    """Warn, before it starts, of a run that drops given velocities, and of a long one.
+
+    A long one takes more than a minute, with a step that stiff dashpots or springs set.
+    """
+    if isinstance(initial, InitialState) and (remark := model.dropped_velocities(initial, settings.start)):
+        warnings.warn(remark, stacklevel=4)
     if is_stiff(model.chain):
         begun = initial if isinstance(initial, ChainState) else model.begin(initial, settings.start)
         if note := cost_note(model, begun, settings):
-            warnings.warn(note, stacklevel=3)
+            warnings.warn(note, stacklevel=4)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from burridge_knopoff.dataset.point import POINT_VARIABLES, point_attributes, point_values, run_coordinates
+from burridge_knopoff.dataset.point import POINT_VARIABLES, has_a, point_attributes, point_values, run_coordinates
 from burridge_knopoff.dataset.variables import PERIOD, Variable, flag
 from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings, takes_model
 from burridge_knopoff.library.model_forms import GivenLaw, model_of
@@ -23,7 +23,7 @@ from burridge_knopoff.library.state_forms import (
     is_list_of_states,
     named_states,
     state_blocks,
-    warn_of_cost,
+    warn_of_run,
 )
 from burridge_knopoff.messages import format_value, full_key, refusal
 from burridge_knopoff.model.chain import Chain
@@ -147,7 +147,7 @@ def sweep(
     axes |= grids[0][1]
     points = [point for base, values in grids for point in _points(base, values, states, axes, chosen)]
     costly = max(points, key=lambda point: point.model.chain.highest_rate)
-    warn_of_cost(costly.model, costly.state, chosen)
+    warn_of_run(costly.model, costly.state, chosen)
     size = min(LOCKSTEP_RUNS, -(-len(points) // cores))
 
     with progress_bar(progress, len(points), "sweep") as advance:
@@ -252,6 +252,8 @@ def _dataset(
     shape = [len(values) for values in axes.values()]
     plain = {name: plain_name(name) for name in axes}
     single = {"law": point.model.law.name, "initial": state, "a": point.model.a, "v": point.model.v}
+    if not any(has_a(attributes) for _, attributes in runs):
+        single.pop("a")
     coordinates = {name for name in single if name not in axes}
     data: dict[str, Any] = {name: ((), single[name], _COORDINATES[name].all_attributes()) for name in coordinates}
     for name, item in {**_COMMON, **_MOTION}.items():

@@ -42,13 +42,12 @@ BLOCKS = 3
 
 _STRENGTHS = Either((STRENGTH, Several(STRENGTH)))
 _BLOCK_VALUES = Either((STRENGTH, Several(STRENGTH), RandomNumbers(STRENGTH)))
-_PULLING = Number(STRENGTH.least, STRENGTH.most, or_zero=True)
 # Other blocks hold a chain in which some blocks are pulled weakly, or not at all.
-_BLOCK_PULLING = Number(DAMPING.least, STRENGTH.most, or_zero=True)
+_PULLING = Number(DAMPING.least, STRENGTH.most, or_zero=True)
 _DAMPING = Either((DAMPING, Several(DAMPING)))
 #: Parameters of each spring between neighbours, and of each block, with their ranges.
 SPRING_PARAMETERS = {"coupling": STRENGTH, "damping": DAMPING}
-BLOCK_PARAMETERS = {"pulling": _BLOCK_PULLING, "threshold": STRENGTH, "mass": STRENGTH, "pulling_damping": DAMPING}
+BLOCK_PARAMETERS = {"pulling": _PULLING, "threshold": STRENGTH, "mass": STRENGTH, "pulling_damping": DAMPING}
 _SIDE = Whole(1, MAXIMUM_BLOCKS)
 
 
@@ -98,9 +97,9 @@ class Chain(Unchanging):
     ] = 1.0
     pulling: Annotated[
         float | Sequence[float] | str,
-        Either((OneOf((NEIGHBOURS,)), _PULLING, Several(_BLOCK_PULLING))),
-        "springs to the driver: one number for all blocks, or one per block (0: no spring); neighbours: the number of "
-        "the block's neighbours, as in the paper (1 for a single block)",
+        Either((OneOf((NEIGHBOURS,)), _PULLING, Several(_PULLING))),
+        "springs to the driver: one number for all blocks, or one per block (0: no spring), 1e-06 or more for at least "
+        "one block; neighbours: the number of the block's neighbours, as in the paper (1 for a single block)",
     ] = NEIGHBOURS
     threshold: Annotated[
         Numbers, _BLOCK_VALUES, "static friction: one number for all blocks, one per block, or random"

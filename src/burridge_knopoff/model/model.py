@@ -95,7 +95,12 @@ class Model(Unchanging):
     @property
     def parameter_names(self) -> tuple[str, ...]:
         """Names of the parameters of the law, the driver and the whole chain."""
-        return ("a", *self.law.parameters, "v", *CHAIN_PARAMETERS)
+        return (*(["a"] if self.law.has_a else []), *self.law.parameters, "v", *CHAIN_PARAMETERS)
+
+    @property
+    def place(self) -> str:
+        """The model in messages: a, or v under a law without a."""
+        return f"a = {self.a!r}" if self.law.has_a else f"v = {self.v!r}"
 
     def parameter(self, name: str) -> float:
         """Return the value of a parameter.
@@ -111,9 +116,8 @@ class Model(Unchanging):
     def _stored_parameter(self, name: str) -> Any:
         """Return a parameter as the model stores it: a number, several numbers or a word."""
         names = self.parameter_names
-        if not parse_indexed_name(name) and name not in names:
-            expected = format_parameter_names(names)
-            raise ValueError(f"{full_key('', name)}: not a parameter of this model, expected {expected}")
+        if not parse_indexed_name(name) and name not in (*names, "a"):
+            raise self._no_parameter(name)
         if names.count(name) > 1:
             raise ValueError(
                 f"{name}: got a parameter of both the law {self.law.name} and the model, expected only one"
@@ -121,6 +125,10 @@ class Model(Unchanging):
         if parameter_key(name) in CHAIN_PARAMETERS:
             return chain_parameter(self.chain, name)
         return {"a": self.a, "v": self.v, **self.law.parameters}[name]
+
+    def _no_parameter(self, name: str) -> ValueError:
+        expected = format_parameter_names(self.parameter_names)
+        return ValueError(f"{full_key('', name)}: not a parameter of this model, expected {expected}")
 
     def at(self, a: float | None = None, /, **parameters: float) -> Model:
         """Return the same model at another a, or at other values of any parameters, such as `at(v=0.2, coupling=1.5)`.
@@ -134,6 +142,8 @@ class Model(Unchanging):
         of_law: dict[str, Any] = {}
         for name, value in (parameters if a is None else {"a": a, **parameters}).items():
             stored = self._stored_parameter(name)
+            if name == "a" and not self.law.has_a and value != stored:
+                raise self._no_parameter(name)
             if not isinstance(stored, float) and stored != NEIGHBOURS:
                 raise refusal(name, stored, _ONE_NUMBER)
             if real_number(value) != real_number(value):
@@ -201,6 +211,20 @@ class Model(Unchanging):
         u, w = self.initial_coordinates(initial)
         stuck = self.stuck_blocks(u, w, start, loading)
         return ChainState(u - self.sliding_offset, np.where(stuck, 0.0, w), stuck)
+
+    def dropped_velocities(self, initial: InitialState, start: str) -> str:
+        """Return a remark on the given velocities of blocks that stick at τ = 0, which do not count; empty if none do.
+
+        The velocities of a state of the paper are not given.
+        """
+        if start == "moving" or isinstance(initial, PaperState):
+            return ""
+        u, w = self.initial_coordinates(initial)
+        dropped = np.flatnonzero(self.stuck_blocks(u, w, start) & (w != 0.0)) + 1
+        if not len(dropped):
+            return ""
+        blocks = f"block {dropped[0]} sticks" if len(dropped) == 1 else f"{len(dropped)} blocks stick"
+        return f"start tested: in the state {initial.name} {blocks} at tau = 0, with velocity 0 in place of that given"
 
     def initial_coordinates(self, initial: InitialState) -> tuple[np.ndarray, np.ndarray]:
         """Return U(0) and U'(0) of an initial state, each of shape (blocks,); a `PaperState` follows v.

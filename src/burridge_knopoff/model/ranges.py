@@ -8,12 +8,13 @@ Y`, with the key of the part at fault, such as `initial.minus.position[1]`.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from burridge_knopoff.laws.formula import FormulaError, formula_names, formula_value
 from burridge_knopoff.messages import full_key, refusal, suggestion
 from burridge_knopoff.values import elements, real_number, scalar
 
@@ -161,7 +162,7 @@ class Interval(Range):
 
     ends: Number
 
-    def _fit(self, value: Any, key: str) -> tuple[float, float] | None:
+    def _fit(self, value: Any, key: str) -> tuple[Any, Any] | None:
         try:
             low, high = Several(self.ends, 2, 2).form(value, key)
         except ValueError:
@@ -170,6 +171,39 @@ class Interval(Range):
 
     def __str__(self) -> str:
         return f"[low, high] with low < high, each {self.ends}"
+
+
+@dataclass(eq=False, repr=False)
+class IntervalAtSpeed(Interval):
+    """An interval [low, high], each end a number or a formula of the driver velocity v, such as `v - 2`."""
+
+    def _fit(self, value: Any, key: str) -> tuple[Any, Any] | None:
+        ends = elements(value) or ()
+        if len(ends) != 2 or not any(isinstance(end, str) for end in ends):
+            return super()._fit(value, key)
+        for place, end in enumerate(ends):
+            self._end_at(end, 1.0, f"{key}[{place}]")
+        low, high = (end if isinstance(end, str) else float(end) for end in ends)
+        return low, high
+
+    def at(self, value: Sequence[float | str], v: float, key: str) -> tuple[float, float]:
+        """Return an interval of this range at a velocity v; raises ValueError, one line, if it is none there."""
+        low, high = self.form([self._end_at(end, v, f"{key}[{place}]") for place, end in enumerate(value)], key)
+        return low, high
+
+    def _end_at(self, end: Any, v: float, key: str) -> float:
+        if not isinstance(end, str):
+            number: float = self.ends.form(end, key)
+            return number
+        try:
+            if "v" not in formula_names(end):
+                raise FormulaError("this has no v")
+            return formula_value(end, {"v": v})
+        except FormulaError as error:
+            raise refusal(key, end, f"{self.ends} or a formula of v: {error}") from None
+
+    def __str__(self) -> str:
+        return f"{super().__str__()} or a formula of v"
 
 
 @dataclass(eq=False, repr=False)

@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 
 from burridge_knopoff.model.initial import COORDINATE, InitialState
-from burridge_knopoff.model.ranges import Interval, Number, Whole
+from burridge_knopoff.model.ranges import Interval, IntervalAtSpeed, Number, Whole
 
 #: Default box: (low, high) of all initial positions U_i(0), and of all initial velocities U_i'(0).
 POSITIONS = (-1.5, 1.5)
@@ -18,6 +18,7 @@ VELOCITIES = (0.0, 0.2)
 #: Ranges of the box and of the number of states.
 POSITION = Interval(COORDINATE)
 VELOCITY = Interval(Number(0.0, 1e6))
+VELOCITY_AT_SPEED = IntervalAtSpeed(COORDINATE)
 SAMPLES = Whole(1, 100_000)
 
 CONFIDENCE = 0.95

@@ -77,7 +77,7 @@ def orbit_of_motion(model: Model, state: ChainState, settling: float, window: fl
     runner = Runner(model, keep_events=True, events_from=settling)
     runner.begin(state, 0.0)
     if runner.run(settling + window) != Status.COMPLETED:
-        raise OrbitError(f"a = {model.a!r}: the run ends at τ = {runner.clock!r}, before {settling + window!r}")
+        raise OrbitError(f"{model.place}: the run ends at τ = {runner.clock!r}, before {settling + window!r}")
     times, values = runner.log.events.times(), runner.log.events.values()
     orbit = orbit_of_events(model, times, values, _is_on_orbit)
     section = "stops"
@@ -86,7 +86,7 @@ def orbit_of_motion(model: Model, state: ChainState, settling: float, window: fl
         orbit = _orbit_without_stops(model, runner.state(), window)
     if orbit is None:
         raise OrbitError(
-            f"a = {model.a:.12g}: no periodic orbit found within {window:g}, from returns at the {section} of a block"
+            f"{model.place}: no periodic orbit found within {window:g}, from returns at the {section} of a block"
         )
     return orbit
 

@@ -84,7 +84,7 @@ def _single_cycle_orbit(model: Model) -> PeriodicOrbit:
     runner = Runner(model, keep_events=True, events_from=SETTLING * unit_of_time, stops_only=True)
     runner.begin(_state_at_rest(model))
     if runner.run((SETTLING + LONGEST_PERIOD) * unit_of_time) != Status.COMPLETED:
-        raise OrbitError(f"a = {model.a!r}: the run from rest ends at τ = {runner.clock!r}")
+        raise OrbitError(f"{model.place}: the run from rest ends at τ = {runner.clock!r}")
     times, values = runner.log.events.times(), runner.log.events.values()
     stops = np.flatnonzero(values[:, 0] == 1)[-CYCLES - 1 :]
     for first, second in pairwise(stops.tolist()):
@@ -96,7 +96,7 @@ def _single_cycle_orbit(model: Model) -> PeriodicOrbit:
             continue
         if orbit.stop_counts[0] == 1:
             return orbit
-    raise OrbitError(f"a = {model.a!r}: no synchronized orbit with one stop per period")
+    raise OrbitError(f"{model.place}: no synchronized orbit with one stop per period")
 
 
 def _settled_orbit(model: Model) -> PeriodicOrbit:

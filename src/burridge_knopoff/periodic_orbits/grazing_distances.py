@@ -101,7 +101,7 @@ def distances_of(model: Model, orbit: PeriodicOrbit) -> GrazingDistances:
     runner = Runner(model, observer=observer)
     runner.begin(orbit.reference, 0.0)
     if runner.run(until + longest) != Status.COMPLETED:
-        raise OrbitError(f"a = {model.a:.12g}: the run along the orbit ends at τ = {runner.clock:g}")
+        raise OrbitError(f"{model.place}: the run along the orbit ends at τ = {runner.clock:g}")
     results = observer.results()
     position, velocity = results["position"], results["velocity"]
     stuck, event = (np.stack(rows, axis=1) for rows in zip(*_states(orbit, time), strict=True))

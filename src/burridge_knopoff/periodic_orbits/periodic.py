@@ -93,7 +93,7 @@ class PeriodicOrbit:
 
     def __repr__(self) -> str:
         return (
-            f"<PeriodicOrbit, {self.symmetry.name.lower()}, {self.model.law.name} law, a = {self.a:.12g}: "
+            f"<PeriodicOrbit, {self.symmetry.name.lower()}, {self.model.law.name} law, {self.model.place}: "
             f"period {self.period:.9g}, stops of each block {self.stop_counts}>"
         )
 
@@ -325,7 +325,7 @@ def find_periodic_orbit(model: Model, guess: ChainState, return_time: float, sym
         guess = ChainState(vector[: model.blocks], vector[model.blocks :], guess.stuck & guess.stuck[::-1])
     orbit = solve_return(model, guess, return_time, symmetry)
     if reason := missing_isolation_of(orbit):
-        raise OrbitError(f"a = {model.a!r}: no isolated periodic orbit found near the guess: {reason}")
+        raise OrbitError(f"{model.place}: no isolated periodic orbit found near the guess: {reason}")
     return orbit
 
 

@@ -19,7 +19,7 @@ CHAIN_OPTIONS = tuple(name for name in fields_of(Chain) if name != "blocks")
 
 def simulate_command(model: Model, initial: InitialState, settings: Settings) -> str:
     """Return the command that repeats this run, quoted for a shell. Settings with default values are omitted."""
-    words = ["bk", "simulate", *_law_options(model.law), "--a", repr(model.law.a)]
+    words = ["bk", "simulate", *_law_options(model.law)]
     words += [*_changed_options(model.chain), *_changed_options(model), "--initial", initial.name]
     if model.chain.springs or (initial.blocks != model.blocks and not model.chain.grid):
         words += ["--blocks", f"{model.blocks}"]
@@ -40,6 +40,8 @@ def _law_options(law: Law) -> Iterator[str]:
     for key, value in law.parameters.items():
         if value != usual.get(key):
             yield from ("--number", f"{key}={value!r}")
+    if law.has_a or law.a:
+        yield from ("--a", repr(law.a))
 
 
 def _changed_options(part: Any) -> Iterator[str]:

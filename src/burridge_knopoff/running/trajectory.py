@@ -87,8 +87,8 @@ class Trajectory:
     def __repr__(self) -> str:
         ended = early_end(Status[self.status.upper()], self.end_time)
         return (
-            f"<Trajectory of {self.model.blocks} blocks from {self.initial.name}, {self.model.law.name} law, a = "
-            f"{self.model.a:g}: {ended or f'completed at tau = {self.end_time:g}'}, {self.event_count} events, "
+            f"<Trajectory of {self.model.blocks} blocks from {self.initial.name}, {self.model.law.name} law, "
+            f"{self.model.place}: {ended or f'completed at tau = {self.end_time:g}'}, {self.event_count} events, "
             f"<J> = {self.mean_distance:.6g} +- {self.mean_distance_error:.1g}>"
         )
 

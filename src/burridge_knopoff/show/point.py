@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray
 
+from burridge_knopoff.dataset.point import has_a
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.motion.kind import format_motion, motion_of_run
 from burridge_knopoff.motion.settings import MotionSettings
@@ -22,7 +23,9 @@ from burridge_knopoff.summaries.text_table import UNLIMITED, table
 def point_lines(result: Result, width: int = UNLIMITED) -> list[str]:
     """Return a description of a point file, one row for each fact, in lines of at most a width."""
     point, attributes = result.data, result.data.attrs
-    head = f"{result.path}: a run from {attributes['initial']}, {attributes['law']} law, a = {point['a'].item()!r}"
+    head = f"{result.path}: a run from {attributes['initial']}, {attributes['law']} law"
+    if has_a(attributes):
+        head += f", a = {point['a'].item()!r}"
     rows = [
         *_model(point),
         *_run(point),
@@ -53,7 +56,8 @@ def _model(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
         if key.startswith("law_") and key != "law_formula"
     ]
     yield "law", ", ".join([f"{attributes['law']}: Phi = {attributes['law_formula']}", *numbers])
-    yield "", f"a = {point['a'].item():g}"
+    if has_a(attributes):
+        yield "", f"a = {point['a'].item():g}"
     yield "driver", f"v = {point['v'].item():g}; contact {attributes['contact']}"
     yield "initial state", f"{attributes['initial']} (start {attributes['start']})"
     yield "", f"U(0)  = {list_numbers(point['initial_position'].values)}"

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from typing import Any
 
+from burridge_knopoff.laws.formula import formula_names
 from burridge_knopoff.messages import format_value, refusal
 from burridge_knopoff.model.parameters import plain_name
 
@@ -20,9 +21,16 @@ _RESERVED = ("law", "initial", "solver", "chunk", "exponent")
 def resolve_grid(config: Mapping[str, Any]) -> Mapping[str, Any]:
     """Return a config as given, with either `a` or `grid`; a grid of a alone becomes `a`.
 
+    If no law has a in its formula, a may be missing, and is 0.
+
     Raises ValueError, one line, if it has both or neither, or a grid without a.
     """
     grid = config.get("grid")
+    if _lacks_a(config.get("laws")):
+        if grid and isinstance(grid, Mapping):
+            config = {**config, "grid": (grid := {"a": [0.0], **grid})}
+        elif not grid:
+            config = {"a": [0.0], **config}
     if not grid and "a" not in config:
         raise ValueError("a: missing, expected friction parameters, or a grid of several parameters")
     if not (grid and isinstance(grid, Mapping)):
@@ -38,6 +46,14 @@ def resolve_grid(config: Mapping[str, Any]) -> Mapping[str, Any]:
             raise refusal("grid", name, "another name for the law's parameter")
     others = {key: value for key, value in config.items() if key not in ("a", "grid")}
     return {**others, "grid": grid} if len(grid) > 1 else {**others, "a": grid["a"]}
+
+
+def _lacks_a(laws: Any) -> bool:
+    """Return whether all laws of a config are formulas without a."""
+    if not (laws and isinstance(laws, Mapping)):
+        return False
+    formulas = [item.get("formula") if isinstance(item, Mapping) else None for item in laws.values()]
+    return all(isinstance(text, str) and "a" not in formula_names(text) for text in formulas)
 
 
 def parameters_of(config: Mapping[str, Any]) -> dict[str, dict[str, float]]:

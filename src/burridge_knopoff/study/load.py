@@ -8,6 +8,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
+from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.messages import refusal
@@ -83,11 +84,16 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
             study.settings(law).check_chain(block_chain)
     # The default is three exponents; a single block has only two.
     filled["lyapunov_exponents"] = study.settings(study.laws[0]).exponent_count(chain)
+    if "attractors" not in study.omitted_stages:
+        with rules.error_prefix("attractors."):
+            settings_from_config(SearchSettings, filled["attractors"]).box(study.model(study.laws[0], values[0]))
     with rules.error_prefix("basins."):
-        settings_from_config(BasinSettings, filled["basins"])
+        of_basins = settings_from_config(BasinSettings, filled["basins"])
+        if "basins" not in study.omitted_stages:
+            of_basins.rows(study.model(study.laws[0], values[0]))
     with rules.error_prefix("chains."):
         settings_from_config(Sample, filled["chains"])
-    rules.fill_values(filled, set(values), study.blocks, study.shown_a)
+    rules.fill_values(filled, set(values), study.shown_a)
     rules.fill_catalogue(filled, values)
     rules.fill_edges(filled, values)
     with rules.error_prefix("catalogue."):

@@ -38,8 +38,8 @@ def _cost_remarks(study: Study) -> list[str]:
 
 def _part_remarks(study: Study, config: Mapping[str, Any]) -> Iterator[str]:
     if study.blocks == 1:
-        yield "one block: J = 0; no basins, phases or synchronized orbit, which need two end blocks"
-    elif config.get("basins") and "basins" not in study.omitted_stages and not study.basin_maps:
+        yield "one block: J = 0; no phases or synchronized orbit, which need two end blocks"
+    if config.get("basins") and "basins" not in study.omitted_stages and not study.basin_maps:
         yield "basins: no map, since no default value of basins.a is on the grid; set basins.a"
     if "claims" not in study.omitted_stages and not study.has_paper_chain:
         yield "claims: none, since they are about the paper's chain of 3 blocks"
@@ -51,6 +51,11 @@ def _state_remarks(study: Study) -> Iterator[str]:
     states = [study.state(name) for name in study.initial]
     yield from remarks_on_states(states, (name for name, values in study.parameters.items() if len(values) > 1))
     velocities: Iterable[float] = study.parameters.get("v", {"": study.config["v"]}).values()
+    for state in states:
+        if remark := study.model(study.laws[0], study.shown_a, **study.other_values[0]).dropped_velocities(
+            state, study.config["start"]
+        ):
+            yield remark
     fixed = [state.name for state in states if has_paper_numbers(state) and not isinstance(state, PaperState)]
     if fixed and {*velocities} != {PAPER_V}:
         yield (

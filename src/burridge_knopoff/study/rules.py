@@ -166,12 +166,12 @@ def _reason(model: Model) -> str:
     return f"as a slope steeper than {model.chain.damping_limit:g} overdamps the blocks"
 
 
-def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int, shown_a: float) -> None:
+def fill_values(config: Mapping[str, Any], grid: Collection[float], shown_a: float) -> None:
     """Check the values of a in all sections against the grid and fill in defaults; shown_a : that of single runs."""
     chain = Chain(**config["chain"])
     of_paper = chain == Chain(3)
     maps = {law: PAPER_BASINS.get(law, next(iter(PAPER_BASINS.values()))) for law in config["laws"]}
-    usual = {law: [a for a in values if a in grid and blocks > 1] for law, values in maps.items()}
+    usual = {law: [a for a in values if a in grid] for law, values in maps.items()}
     basins, phases, solvers = (config[section] for section in ("basins", "phases", "solvers"))
     chosen = _law_keys(SOME_VALUES, usual).form(basins["a"], "basins.a")
     basins["a"] = {law: list(values) for law, values in chosen.items()}
@@ -180,8 +180,6 @@ def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int,
     config["figures"].setdefault("a", shown_a)
     if phases["a"] and not has_free_ends(chain):
         raise refusal("phases.a", phases["a"], "[] unless the chain is a row of three blocks or more with open ends")
-    if blocks == 1 and any(basins["a"].values()):
-        raise ValueError(f"basins.a: got {basins['a']}, expected no values for one block: a map needs two end blocks")
     for key, values in (
         *((f"basins.a.{law}", values) for law, values in basins["a"].items()),
         ("phases.a", phases["a"]),

@@ -193,13 +193,15 @@ class Study:
 
     @property
     def marked_states(self) -> dict[str, list[tuple[float, float]]]:
-        """U_1(0) and U_N(0) on each basin map of the initial states in its plane, by name."""
+        """Coordinates on each basin map of the initial states in its plane, by name: U_1(0) and U_N(0), or U_1'(0)."""
         models = [self.model(law, a) for law, values in self.config["basins"]["a"].items() for a in values]
         base = self.config["basins"]["initial"]
         marked = {}
         for name in self.initial:
             states = [[model.initial_coordinates(self.state(state)) for state in (name, base)] for model in models]
-            if all(np.array_equal(u[1:-1], v[1:-1]) and np.array_equal(w, z) for (u, w), (v, z) in states):
+            if self.blocks == 1:
+                marked[name] = [(float(u[0]), float(w[0])) for (u, w), _ in states]
+            elif all(np.array_equal(u[1:-1], v[1:-1]) and np.array_equal(w, z) for (u, w), (v, z) in states):
                 marked[name] = [(float(u[0]), float(u[-1])) for (u, _), _ in states]
         return marked
 

@@ -125,10 +125,15 @@ def search_attributes(model: Model, settings: SearchSettings, motion: MotionSett
         "section": str(motion.section),
         "longest_period": motion.scaled_to_velocity(model.v).longest_period,
         "position_box": np.array(settings.position),
-        "velocity_box": np.array(settings.velocity),
+        "velocity_box": _numbers_or_text(settings.velocity),
         **{key: value for key, value in asdict(settings).items() if key not in ("position", "velocity")},
         "label_limit": settings.label_limit,
     }
+
+
+def _numbers_or_text(ends: Sequence[float | str]) -> np.ndarray | str:
+    """Return the ends of an interval as an attribute: as a text if one of them is a formula."""
+    return ", ".join(map(str, ends)) if any(isinstance(end, str) for end in ends) else np.array(ends)
 
 
 def _initial_branches(

@@ -17,6 +17,7 @@ from burridge_knopoff.basins.pair_separation import SEPARATIONS, follow_pairs
 from burridge_knopoff.basins.plane import pixel_centres, plane, states
 from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.basins.uncertainty import ExponentKind, uncertainty_exponent
+from burridge_knopoff.dataset.point import has_a
 from burridge_knopoff.dataset.summary import AXES, axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.fields import settings_from_config
@@ -78,6 +79,7 @@ MAP_VARIABLES = {
 COORDINATES = {
     "first_position": _V(("first_position",), "f8", "initial position U_1(0): of the first block", coordinate=True),
     "last_position": _V(("last_position",), "f8", "initial position U_N(0): of the last block", coordinate=True),
+    "first_velocity": _V(("first_velocity",), "f8", "initial velocity U_1'(0): of one block", coordinate=True),
     "separation": _V(
         ("separation",), "f8", "separation: distance between the two states of a pair in the plane", coordinate=True
     ),
@@ -136,14 +138,15 @@ def merge_maps(
 def tile(
     candidates: KnownAttractors, number: int, basins: BasinSettings, label_limit: float, start: str
 ) -> xarray.Dataset:
-    """Label one tile of a map: a band of rows of equal U_N(0).
+    """Label one tile of a map: a band of rows of equal U_N(0), or U_1'(0) of one block.
 
     candidates : the attractors of the model
     number : of the tile, from 0
     label_limit : time by which a state has to reach an attractor; start : see `Model.begin`
     """
     first = pixel_centres(basins.first_position, basins.pixels)
-    last = np.array_split(pixel_centres(basins.last_position, basins.pixels), basins.tiles)[number]
+    row, interval = basins.rows(candidates.model)
+    last = np.array_split(pixel_centres(interval, basins.pixels), basins.tiles)[number]
     u, w = candidates.model.initial_coordinates(basins.initial)
     position, velocity = plane(u, first, last, w)
     labels, times = _labels(candidates, position, velocity, basins, label_limit, start)
@@ -154,8 +157,9 @@ def tile(
     }
     values["decision_time"] = np.where(labels == UNDETERMINED, np.nan, times).reshape(shape)
     attributes = {"law": candidates.model.law.name, "a": candidates.model.a, "history": "snakemake, from attractors.nc"}
-    coordinates = axes(COORDINATES, first_position=first, last_position=last)
-    return summary("Tile of a map of basins", TILE_VARIABLES, values, coordinates, attributes, module=__name__)
+    coordinates = axes(COORDINATES, **{"first_position": first, row: last})
+    variables = _of_plane(TILE_VARIABLES, row)
+    return summary("Tile of a map of basins", variables, values, coordinates, attributes, module=__name__)
 
 
 def pairs(
@@ -170,7 +174,8 @@ def pairs(
         position, velocity = states(u, first, last, w)
         return _labels(candidates, position, velocity, basins, label_limit, start)[0]
 
-    counts = follow_pairs(label, basins.first_position, basins.last_position, basins.pairs, seed)
+    _, interval = basins.rows(candidates.model)
+    counts = follow_pairs(label, basins.first_position, interval, basins.pairs, seed)
     exponent = uncertainty_exponent(counts)
     values: dict[str, Any] = {"uncertain_count": counts.different_count, "pair_count": counts.labelled_count}
     for name, pair in (
@@ -218,7 +223,8 @@ def merge(
     attractors : the summary of that name, which has the names of the branches
     basins, label_limit, start : settings of the maps
     """
-    wholes = [xarray.concat(tiles, "last_position", combine_attrs="drop_conflicts") for _, tiles, _ in maps]
+    row, interval = basins.rows(maps[0][0])
+    wholes = [xarray.concat(tiles, row, combine_attrs="drop_conflicts") for _, tiles, _ in maps]
     values = xarray.merge(
         [
             xarray.concat(wholes, "map", join="exact", combine_attrs="drop"),
@@ -227,10 +233,10 @@ def merge(
         ],
         combine_attrs="drop",
     )
-    values["undetermined_count"] = (values["branch"] == UNDETERMINED).sum(["first_position", "last_position"])
+    values["undetermined_count"] = (values["branch"] == UNDETERMINED).sum(["first_position", row])
     models = [model for model, *_ in maps]
     of_map = axes(OF_MAP, law=[model.law.name for model in models], a=[model.a for model in models])
-    coordinates = {**axes(COORDINATES, **{name: values[name] for name in COORDINATES}), **of_map}
+    coordinates = {**axes(COORDINATES, **{name: values[name] for name in COORDINATES if name in values}), **of_map}
     u, w = models[0].initial_coordinates(basins.initial)
     attributes = {
         "history": "snakemake, from attractors.nc",
@@ -240,10 +246,20 @@ def merge(
         "plane_position": u,
         "plane_velocity": w,
         "first_range": np.array(basins.first_position),
-        "last_range": np.array(basins.last_position),
+        "last_range" if row == "last_position" else "velocity_range": np.array(interval),
         "label_limit": label_limit,
     }
-    return summary("Basins of attraction", MAP_VARIABLES, values, coordinates, attributes, module=__name__)
+    variables = _of_plane(MAP_VARIABLES, row)
+    return summary("Basins of attraction", variables, values, coordinates, attributes, module=__name__)
+
+
+def _of_plane(variables: Mapping[str, Variable], row: str) -> dict[str, Variable]:
+    """Return variables of a map whose second axis has this name."""
+    plane = dict(zip(_PLANE, (row, "first_position"), strict=True))
+    return {
+        name: replace(item, dimensions=tuple(plane.get(axis, axis) for axis in item.dimensions))
+        for name, item in variables.items()
+    }
 
 
 def digest(dataset: xarray.Dataset) -> str:
@@ -262,7 +278,8 @@ def digest(dataset: xarray.Dataset) -> str:
             shares[0] += f" ({row.symmetric_count} of {row.undetermined} {line})"
         times = basin_map["decision_time"].values
         decided = f"; mean decision time {np.nanmean(times):.0f}" if np.isfinite(times).any() else ""
-        lines.append(f"{row.law}, a = {row.a:g}: {', '.join(shares)}; {exponent_text(basin_map)}{decided}")
+        place = f"{row.law}, a = {row.a:g}" if has_a(dataset.attrs) else row.law
+        lines.append(f"{place}: {', '.join(shares)}; {exponent_text(basin_map)}{decided}")
     return "\n".join(lines) + "\n"
 
 

@@ -62,6 +62,8 @@ def count_symmetric_undetermined(basin_map: xarray.Dataset) -> int:
     In a chain that is its own mirror image these states stay mirror-symmetric. They therefore reach no attractor where
     synchrony is unstable. If all states of the map are undetermined, for other reasons, the result is 0.
     """
+    if "last_position" not in basin_map.dims:
+        return 0
     position, velocity = basin_map.attrs["plane_position"], basin_map.attrs["plane_velocity"]
     undetermined = basin_map["branch"].values == _UNDETERMINED
     if undetermined.all() or (position[1:-1] != position[-2:0:-1]).any() or (velocity != velocity[::-1]).any():
