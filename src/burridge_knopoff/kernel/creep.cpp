@@ -143,8 +143,11 @@ void Run::balance(Group &group, const std::vector<int> &members) {
     std::vector<double> right(members.size());
     for (size_t m = 0; m < members.size(); m++) {
         const int lane = lane_of[members[m]], c = lane / LANES;
-        const double spring = (state.layout.sliding_force[c] + state.layout.pull(state.position.at(), c) -
-                               state.layout.diagonal[c] * state.position[c])[lane % LANES];
+        const Blocks &layout = state.layout;
+        const vec *x = state.position.at();
+        const double spring = (layout.increments.used ? layout.sliding_force[c] + layout.spring_pull(x, 0, c)
+                                                      : layout.sliding_force[c] + layout.pull(x, c) -
+                                                            layout.diagonal[c] * x[c])[lane % LANES];
         right[m] = spring - state.slip.lane(lane) * springs.threshold[members[m]] * model.law.at_rest;
     }
     const std::vector<double> rest = solve(members, right);

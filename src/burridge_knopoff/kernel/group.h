@@ -74,6 +74,9 @@ struct Group {
     void advance(double t) {
         series.move(state, Blocks::splat(t), Blocks::all_lanes(true));
         for (int c = 0; c < layout.columns; c++) layout.sliding_force[c] += layout.drift[c] * t;
+        Rows &reference = layout.increments.reference;
+        for (int c = 0; layout.increments.used && c < layout.columns; c++)
+            reference[c] = select(state.slip[c] == vec{}, state.position[c], reference[c] - layout.v * t);
         start = start.after(t);
         planned = false;
     }
@@ -182,7 +185,7 @@ struct Group {
 
     // The spring forces on a column of blocks at positions x, at a time of the piece.
     vec force(const vec *x, int c, double t) const {
-        return layout.sliding_force[c] + layout.drift[c] * t + (layout.pull(x, c) - layout.diagonal[c] * x[c]);
+        return layout.sliding_force[c] + layout.drift[c] * t + layout.spring_pull(x, 0, c, t);
     }
 
     void load_speed(Polynomial &polynomial, int lane, double from) {

@@ -343,12 +343,7 @@ void Run::observe_all(const Clock &at, const Clock &reach) {
 
 // The force on a waiting block at a time; its neighbours do not move.
 double Run::waiting_force(int i, const Clock &at) const {
-    const Springs &springs = model.springs;
-    double pull = 0.0;
-    for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++)
-        pull += springs.strength[p] * position_at_rest(springs.neighbour[p], at);
-    return (springs.sliding_force[i] + springs.damping_load[i]) +
-           (pull - springs.diagonal[i] * position_at_rest(i, at));
+    return (model.springs.sliding_force[i] + model.springs.damping_load[i]) + spring_pull(i, at);
 }
 
 // W at a time before the next change of any block.

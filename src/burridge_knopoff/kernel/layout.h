@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "increments.h"
 #include "law.h"
 #include "springs.h"
 #include "vector.h"
@@ -123,6 +124,7 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
     Links springs, dashpots;
     int degree = 0;
     std::vector<int> lane_of_neighbour;
+    Increments<LANES> increments;
 
     explicit Blocks(const Model &model) : model(model) {
         share(model);
@@ -199,22 +201,39 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
         }
     }
 
+    // The reference positions recede from a driver that advances by a distance.
+    void recede(double distance) {
+        for (int c = 0; c < columns; c++) {
+            sliding_force[c] += driving[c] * distance;
+            increments.reference[c] -= distance;
+        }
+    }
+
+    // The spring forces on the blocks of a column that follow from positions x (power 0), relative velocities (1), or
+    // further coefficients of x in powers of the time, which are 0 for stuck blocks. t : the time of positions
+    BK_INLINE vec spring_pull(const vec *x, int power, int c, double t = 0.0) const {
+        if (__builtin_expect(row, true)) return pull_in_line(springs, x, c) - diagonal[c] * x[c];
+        if (!increments.used) return pull(springs, x, c) - diagonal[c] * x[c];
+        const double *at = reinterpret_cast<const double *>(x);
+        return increments.springs(c, [&](int lane) {
+            return power == 0   ? at[lane] - (increments.reference.lane(lane) - v * t)
+                   : power == 1 ? at[lane] + v
+                                : at[lane];
+        });
+    }
+    // −(C u)_i for velocities u, or their rates.
+    BK_INLINE vec dashpot_pull(const vec *u, int c) const {
+        if (!increments.used) return drag(u, c) - damping_diagonal[c] * u[c];
+        return increments.dashpots(c, [&](int lane) { return reinterpret_cast<const double *>(u)[lane]; });
+    }
+
     // The pulls of the neighbours on the blocks of one column, by springs or by dashpots.
     BK_INLINE vec pull(const vec *x, int c) const { return pull(springs, x, c); }
     BK_INLINE vec drag(const vec *u, int c) const { return pull(dashpots, u, c); }
 
     // The pulls of both neighbours are added first, so that a mirrored state has mirrored forces to the bit.
     BK_INLINE vec pull(const Links &links, const vec *x, int c) const {
-        if (__builtin_expect(row, true)) {
-            vec previous = before(c > 0 ? x[c - 1] : x[c], x[c]);
-            vec following = after(x[c], c + 1 < columns ? x[c + 1] : x[c]);
-            if (closed) {
-                const int end = int(member.size()) - 1;
-                if (c == 0) previous[0] = reinterpret_cast<const double *>(x)[end];
-                if (c == end / LANES) following[end % LANES] = x[0][0];
-            }
-            return links.left[c] * previous + links.right[c] * following;
-        }
+        if (__builtin_expect(row, true)) return pull_in_line(links, x, c);
         vec total{};
         const double *position = reinterpret_cast<const double *>(x);
         for (int slot = 0; slot < degree; slot++) {
@@ -223,6 +242,16 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
                 total[lane] += links.of[first + lane] * position[lane_of_neighbour[first + lane]];
         }
         return total;
+    }
+    BK_INLINE vec pull_in_line(const Links &links, const vec *x, int c) const {
+        vec previous = before(c > 0 ? x[c - 1] : x[c], x[c]);
+        vec following = after(x[c], c + 1 < columns ? x[c + 1] : x[c]);
+        if (closed) {
+            const int end = int(member.size()) - 1;
+            if (c == 0) previous[0] = reinterpret_cast<const double *>(x)[end];
+            if (c == end / LANES) following[end % LANES] = x[0][0];
+        }
+        return links.left[c] * previous + links.right[c] * following;
     }
 
     // The smallest value of all lanes, or whether any lane is set, in all lanes.
@@ -290,6 +319,9 @@ struct Trajectories : Layout<WIDEST, Lanes<WIDEST>::vec> {
 
     const Law &law(int lane) const { return *laws[lane]; }
 
+    // As in Blocks, by all neighbours.
+    BK_INLINE vec spring_pull(const vec *x, int, int i) const { return pull(x, i) - diagonal[i] * x[i]; }
+    BK_INLINE vec dashpot_pull(const vec *u, int i) const { return drag(u, i) - damping_diagonal[i] * u[i]; }
     BK_INLINE vec pull(const vec *x, int i) const { return pull(spring, x, i); }
     BK_INLINE vec drag(const vec *u, int i) const { return pull(dashpot, u, i); }
     BK_INLINE vec pull(const Rows &links, const vec *x, int i) const {

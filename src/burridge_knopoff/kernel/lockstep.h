@@ -27,7 +27,8 @@ class Lockstep : private Example, public TrajectoryLanes {
 
     // Whether a run can use a lane: it must move as a whole under steady loading, without a catalogue.
     static bool takes(const Run &run) {
-        return !run.local && run.loading == 0.0 && !run.modes && !run.catalogue && !run.exponents.at_rest;
+        return !run.local && !run.model.springs.dense && run.loading == 0.0 && !run.modes && !run.catalogue &&
+               !run.exponents.at_rest;
     }
     // Whether a run can share vectors with the others.
     bool is_like(const Run &run) const { return run.exponents.tangent.vectors == vectors && run.model.is_like(model); }

@@ -7,7 +7,7 @@ void Run::restart(const Clock &at, const Clock &loaded) {
     load = loaded;
     observer.begin = at.time;
     observer.section_from = NEVER;
-    steps = 0;
+    steps = stops = 0;
     since_event = 0.0;
     log.restart(at.time);
     if (catalogue) catalogue->restart();
@@ -29,6 +29,7 @@ void Run::resume(const Mark &mark, double time) {
     const Clock begin{time, 0.0};
     restart(loading > 0.0 ? mark.now : begin, loading > 0.0 ? mark.load : begin);
     since_event = mark.since_event;
+    stops = mark.stops;
     if (catalogue && mark.catalogue) catalogue->resume(*mark.catalogue);
     // A section that is observed from now on keeps the sign of W of the previous run.
     if (observer.transient() <= time) {
@@ -53,6 +54,8 @@ void Run::resume(const Mark &mark, double time) {
         for (int k = 0; k < group.size(); k++) {
             group.layout.sliding_force.lane(k) = mark.sliding_force[group.layout.member[k]];
             group.layout.drift.lane(k) = mark.drift[group.layout.member[k]];
+            if (group.layout.increments.used)
+                group.layout.increments.reference.lane(k) = mark.reference[group.layout.member[k]];
         }
         if (local && mark.local) blind |= !schedule(group);
         if (modes) start_modes(group, mark);
@@ -132,7 +135,8 @@ Group &Run::build(std::vector<int> members, const Clock &at) {
     }
     auto place = [&](int i) { return group_of[i] == number ? lane_of[i] : -1; };
     group.layout.lay(place);
-    if (n < blocks) group.layout.outside(place, [&](int i) { return position_at_rest(i, at); });
+    const bool dense = model.springs.dense;
+    if (n < blocks && !dense) group.layout.outside(place, [&](int i) { return position_at_rest(i, at); });
     group.state.widen();
     for (size_t k = n; k < size_t(group.layout.columns) * LANES; k++) group.state.place(k, 0.0, 0.0, true);
     for (int k = 0; k < n; k++) {
@@ -144,7 +148,30 @@ Group &Run::build(std::vector<int> members, const Clock &at) {
         group.state.slip.lane(k) = block.slip;
         group.state.touching.lane(k) = block.touching;
     }
+    if (dense) hold(group);
     return group;
+}
+
+// Take the present positions of the blocks of a group in a dense network as reference positions, and add up the forces.
+void Run::hold(Group &group) {
+    Blocks &layout = group.layout;
+    layout.increments.begin(layout.columns);
+    for (int k = 0; k < group.size(); k++) {
+        const int i = layout.member[k];
+        layout.increments.reference.lane(k) = group.state.position.lane(k);
+        layout.sliding_force.lane(k) = model.springs.sliding_force[i] + spring_pull(i, group.start);
+        layout.drift.lane(k) = layout.driving.lane(k) * model.v;
+        if (group.state.slip.lane(k) != 0.0) layout.increments.start(model.springs, layout.member, k);
+    }
+}
+
+// −(K x)_i at a time at which the neighbours stick, or belong to the group of the block.
+double Run::spring_pull(int i, const Clock &at) const {
+    const Springs &springs = model.springs;
+    double pull = 0.0;
+    for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++)
+        pull += springs.strength[p] * position_at_rest(springs.neighbour[p], at);
+    return pull - springs.diagonal[i] * position_at_rest(i, at);
 }
 
 // The state of the block in a lane of a group; loaded : the loading clock
@@ -195,6 +222,7 @@ void Run::change(Group &group, int lane, const Clock &at) {
     if (exponents.tangent.vectors > 0) exponents.change(group.state, model.springs, i, lane, at);
     const int kind = group.state.slip.lane(lane) == 0.0;
     group.state.transition(lane / LANES, Blocks::from_bits(1 << lane % LANES));
+    stops += !kind;
     if (!directions.empty()) {
         directions[i] = group.state.slip.lane(lane);
         sticking += kind ? -1 : 1;
@@ -243,6 +271,8 @@ void Run::remember() {
     marked.begins = begins;
     marked.sliding_force.assign(blocks, 0.0);
     marked.drift.assign(blocks, 0.0);
+    marked.reference.assign(model.springs.dense ? blocks : 0, 0.0);
+    marked.stops = stops;
     marked.group = group_of;
     // The time up to which groups have been observed, which a run of zero length does not change.
     marked.now = local && loading == 0.0 ? observed : now;
@@ -263,6 +293,7 @@ void Run::remember() {
         marked.block[i] = block_in(group, lane, alone[i].loaded);
         marked.sliding_force[i] = group.layout.sliding_force.lane(lane);
         marked.drift[i] = group.layout.drift.lane(lane);
+        if (group.layout.increments.used) marked.reference[i] = group.layout.increments.reference.lane(lane);
         if (!local) marked.side = group.side;
     }
 }
@@ -290,6 +321,11 @@ int Run::run_whole() {
     Group &group = *groups[group_of[0]];
     for (;;) {
         if (const int reason = blocked()) return reason;
+        // Once in so many stops, so that rounding does not accumulate.
+        if (model.springs.dense && !group.planned && stops >= blocks) {
+            hold(group);
+            stops = 0;
+        }
         if (loading > 0.0 && !group.planned && rests(group)) {
             const bool slips = halting_block >= 0 && group.state.slip.lane(halting_block) != 0.0;
             if (stop_slow(group)) {
@@ -349,12 +385,12 @@ int Run::run_whole() {
 
 // Advance the driver, which stops while blocks slip, until a block starts; false if the run ends before.
 bool Run::load_next(Group &group) {
-    const Blocks &layout = group.layout;
+    Blocks &layout = group.layout;
     Blocks::Rows left(layout.columns), creep(layout.columns), rate(layout.columns);
     for (int i = 0; i < blocks; i++) creep.lane(lane_of[i]) = alone[i].creep;
     double least = NEVER;
     for (int c = 0; c < layout.columns; c++) {
-        rate[c] = layout.driving[c] + layout.pull(creep.at(), c);
+        rate[c] = layout.driving[c] + layout.spring_pull(creep.at(), 2, c);
         const mask pulled = layout.present[c] & (group.state.slip[c] == vec{}) & (rate[c] > vec{});
         const vec gap = largest(layout.threshold[c] - group.state.force(c), vec{});
         left[c] = select(pulled, gap / (loading * rate[c]), Blocks::splat(NEVER));
@@ -377,6 +413,7 @@ bool Run::load_next(Group &group) {
         group.state.position[c] -= loading * least * (1.0 - creep[c]);
         due[c] = bits(left[c] == least);
     }
+    if (layout.increments.used) layout.recede(loading * least);
     if (exponents.running) {
         int first = 0;
         while (left.lane(first) != least) first++;

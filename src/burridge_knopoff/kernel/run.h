@@ -38,8 +38,9 @@ struct Mark {
     std::vector<int> group;  // of each block, −1 for none
     // Start times of blocks without a group.
     std::vector<Clock> begins;
-    // Forces on the blocks of a group from outside it.
-    std::vector<double> sliding_force, drift;
+    // Forces on the blocks of a group from outside it; in a dense network, forces at the reference positions.
+    std::vector<double> sliding_force, drift, reference;
+    int stops = 0;
     // The slip clock and, under quasi-static loading, the loading clock.
     Clock now, load;
     // Positions and velocities at the last event, for the closed form.
@@ -56,14 +57,12 @@ struct Mark {
     template <class A>
     void archive(A &values) {
         values(block, group, begins, sliding_force, drift, now, load, origin, origin_velocity, catalogue, since_event,
-               side, section_from, local);
+               side, section_from, local, reference, stops);
     }
 };
 
 class Run {
   public:
-    // Number of blocks from which on groups are faster than a single group.
-    static constexpr int MANY = 24;
     // Velocities of a set of slow slips that are below 0 by less than this share of the largest are rounding.
     static constexpr double NOISE = 1e-7;
     // Longest time between orthonormalisations, which are also needed without events, in units of the shortest.
@@ -103,7 +102,8 @@ class Run {
     Run(const Model &model, EventLog &log, Observer &observer, Exponents &exponents, bool observing, int local,
         long long step_limit, double loading)
         : model(model), log(log), observer(observer), exponents(exponents), observing(observing),
-          local(!exponents.is_carried() && (local < 0 ? model.springs.blocks >= MANY : local > 0)),
+          local(!exponents.is_carried() &&
+                (local < 0 ? model.springs.blocks >= Springs::MANY && !model.springs.single : local > 0)),
           step_limit(step_limit), loading(loading), end(observer.end()), blocks(model.springs.blocks),
           first(observer.section ? observer.section - 1 : 0),
           last(observer.section ? observer.section : model.springs.blocks), law(model.law, 1), alone(blocks),
@@ -169,6 +169,7 @@ class Run {
     bool settled = false;
     Watch watch;
     double since_event = 0.0;
+    int stops = 0;  // since the forces of a dense network were last added up
     Mark marked;
     EventScratch<Blocks> scratch;
     Polynomial &polynomial = scratch.polynomial;
@@ -204,6 +205,8 @@ class Run {
     // Displacement of the driver relative to a block that sticks or creeps, on the loading clock.
     double lag(int i) const { return loading * alone[i].loaded.until(load) * (1.0 - alone[i].creep); }
     Group &build(std::vector<int> members, const Clock &at);
+    void hold(Group &group);
+    double spring_pull(int i, const Clock &at) const;
     Block block_in(Group &group, int lane, const Clock &loaded) const;
     void retire(Group &group);
     bool plan(Group &group);

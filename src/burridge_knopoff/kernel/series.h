@@ -137,7 +137,7 @@ struct Series {
         }
         polynomial.degree = ORDER;
         for (int k = 0; k <= ORDER; k++) {
-            polynomial.coefficient[k] = -(layout.pull(x(k), c)[lane] - layout.diagonal[c][lane] * x(k)[c][lane]);
+            polynomial.coefficient[k] = -layout.spring_pull(x(k), k, c)[lane];
             if (layout.damped) polynomial.coefficient[k] -= state.damping(u(k), c)[lane];
         }
         polynomial.coefficient[0] += layout.threshold[c][lane] - layout.sliding_force[c][lane];
@@ -165,8 +165,9 @@ struct Series {
     Rows signed_threshold, weakening, pressed, force;
     // Quantities of a column for the recursion, and its last row.
     struct Column {
-        vec slip, stuck, moving, weakening, pressed, diagonal, line_slope, inverse_slope, start, force, speed;
+        vec slip, stuck, moving, weakening, pressed, line_slope, inverse_slope, start, force, speed;
         vec *line, *inverse;
+        bool rests;  // whether all blocks of the column stick
     };
     std::vector<Column> column;
 
@@ -236,8 +237,8 @@ struct Series {
             at.slip = state.slip[c];
             at.stuck = stuck[c];
             at.moving = slipping[c] * layout.inverse_mass[c];
+            at.rests = L::ONE_CLOCK && !COLUMNS && KIND == HYPERBOLIC_LAW && !any(at.slip != vec{});
             at.weakening = weakening[c];
-            at.diagonal = layout.diagonal[c];
             at.force = force[c];
             at.speed = u(1)[c];
             if constexpr (KIND == HYPERBOLIC_LAW) {
@@ -255,6 +256,11 @@ struct Series {
             const double factor = INVERSE[n + 1];
             for (int c = 0; c < count; c++) {
                 Column &at = own[c];
+                if (!COLUMNS && at.rests) {
+                    g[c] = -at.force;
+                    at.line[n] = at.inverse[n] = at.speed = velocity[c] = position[c] = vec{};
+                    continue;
+                }
                 const vec speed = at.speed;
                 g[c] = at.slip * speed - at.stuck * at.force;
                 vec next = (at.moving * factor) * at.force;
@@ -271,7 +277,7 @@ struct Series {
                 position[c] = speed * factor;
             }
             for (int c = 0; c < count; c++) {
-                own[c].force = layout.pull(position, c) - own[c].diagonal * position[c];
+                own[c].force = layout.spring_pull(position, n + 1, c);
                 if constexpr (DAMPED) own[c].force += state.damping(velocity, c);
             }
             position += step;

@@ -23,6 +23,12 @@ namespace bk {
 
 // The neighbours of block i and the springs to them are at start[i] … start[i + 1] − 1.
 struct Springs {
+    // Number of blocks from which on groups are faster than a single group.
+    static constexpr int MANY = 24;
+    // Number of neighbours up to which the springs to all of them are added, and the number of operations for each
+    // block that a network costs as a single group, relative to those for each pair of blocks in a group.
+    static constexpr int FEW_NEIGHBOURS = 8;
+    static constexpr double GROUPED = 3.0;
     int blocks;
     std::vector<double> diagonal, driving, threshold, sliding_force, mass;
     std::vector<int64_t> start;
@@ -45,6 +51,9 @@ struct Springs {
     double firmest;
     // Largest number of neighbours.
     int degree;
+    // Whether blocks have so many neighbours that forces by increments from the blocks that slip are faster, and
+    // whether the whole network is then faster as a single group.
+    bool dense, single;
 
     void complete() {
         row = true;
@@ -65,6 +74,8 @@ struct Springs {
             }
         }
         if (!row) ring = false;
+        dense = !row && blocks >= MANY && degree > FEW_NEIGHBOURS;
+        single = dense && degree * double(degree) > GROUPED * blocks;
         std::vector<double> vector(blocks, 1.0), product(blocks);
         double largest = 0.0;
         for (int step = 0; step < 3; step++) {

@@ -59,18 +59,18 @@ struct State {
     // The force of springs and dashpots on slipping and stuck blocks, and its rate. relative, slope : U_i' − v and
     // U_i''
     BK_INLINE vec force(int c) const {
-        vec made = layout.sliding_force[c] + (layout.pull(position.at(), c) - layout.diagonal[c] * position[c]);
+        vec made = layout.sliding_force[c] + layout.spring_pull(position.at(), 0, c);
         if (layout.damped) made += layout.damping_load[c] + damping(velocity.at(), c);
         return made;
     }
     BK_INLINE vec force_rate(const vec *relative, const vec *slope, int c) const {
-        vec made = layout.drift[c] + (layout.pull(relative, c) - layout.diagonal[c] * relative[c]);
+        vec made = layout.drift[c] + layout.spring_pull(relative, 1, c);
         if (layout.damped) made += damping(slope, c);
         return made;
     }
     vec force_rate(int c) const { return force_rate(relative.at(), slope.at(), c); }
     // −(C u)_i for velocities u, or their rates.
-    BK_INLINE vec damping(const vec *u, int c) const { return layout.drag(u, c) - layout.damping_diagonal[c] * u[c]; }
+    BK_INLINE vec damping(const vec *u, int c) const { return layout.dashpot_pull(u, c); }
 
     // Compute what the rates of forces depend on.
     void measure() {
@@ -164,6 +164,20 @@ struct State {
         touching[c] = select(touches, L::splat(1.0), touching[c]);
         age[c] = select(touches, zero, age[c]);
         acceleration[c] = select(touches, direction * start_acceleration(c), acceleration[c]);
+        if constexpr (L::ONE_CLOCK)
+            if (layout.increments.used) follow(c, bits(where));
+    }
+
+    // Forces by increments: blocks of a column have stopped or started.
+    void follow(int c, int which) {
+        for (int lane = 0; which >> lane; lane++) {
+            if (!(which >> lane & 1)) continue;
+            const int k = c * L::LANES + lane;
+            if (slip.lane(k) != 0.0)
+                layout.increments.start(layout.model.springs, layout.member, k);
+            else
+                layout.increments.stop(layout.sliding_force, k, position.lane(k));
+        }
     }
 };
 
