@@ -14,8 +14,9 @@ from scipy.integrate import solve_ivp
 from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, find_attractors, label_states, law_of, simulate
 from burridge_knopoff.attractors.labels import label
 from burridge_knopoff.continuation.attractor_continuation import continue_attractors
-from burridge_knopoff.motion.section_returns import ReturnSection, velocity_maxima, visit
-from burridge_knopoff.motion.uniform_sliding import eigenvalues, is_sliding_attracting
+from burridge_knopoff.model.uniform_sliding import eigenvalues, is_sliding_attracting
+from burridge_knopoff.motion.section_returns import ReturnSection, visit
+from burridge_knopoff.periodic_orbits.without_stops import velocity_maxima
 
 SETTINGS = SearchSettings(samples=12, transient=1000.0, window=1000.0)
 HOPF = 0.5 * math.log(10.0)
@@ -187,9 +188,9 @@ def test_the_maxima_of_the_velocity_are_those_of_a_harmonic_oscillator():
     model = Model(Chain(1, pulling=1.0), law, 0.5)
     start = model.begin(simulate(model, initial={"position": [0.0], "velocity": [0.5]}, window=1).initial)
     start = replace(start, position=np.array([0.2]), velocity=np.array([0.5]))
-    rows = velocity_maxima(model, start, 10.0, 40.0)
-    np.testing.assert_allclose(rows[:, 0], 1.5 * np.pi + 2.0 * np.pi * np.arange(1, 6), rtol=1e-13)
-    np.testing.assert_allclose(rows[:, 1:], [[1.0, 0.0, 0.7]] * 5, atol=1e-13)
+    times, rows = velocity_maxima(model, start, 10.0, 40.0)
+    np.testing.assert_allclose(times, 1.5 * np.pi + 2.0 * np.pi * np.arange(1, 6), rtol=1e-13)
+    np.testing.assert_allclose(rows, [[1.0, 0.0, 0.0, 0.7]] * 5, atol=1e-13)
     assert visit(model, start, 0.0, 100.0).section == ReturnSection.MAXIMA
 
 

@@ -18,9 +18,10 @@ from scipy.spatial import cKDTree
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.continuation.settings import REFINEMENT
 from burridge_knopoff.motion.kind import REGULAR, MotionKind
-from burridge_knopoff.motion.section_returns import ReturnSection, velocity_maxima
+from burridge_knopoff.motion.section_returns import ReturnSection
 from burridge_knopoff.motion.set_distance import distance
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.periodic_orbits.without_stops import velocity_maxima
 
 #: Distance, for v = 0.1, within which sets at neighbouring values of a parameter belong to one branch. In the paper's
 #: study a set that changes smoothly moves by at most 0.007 per step of a, a torus that is locked to one orbit after
@@ -59,11 +60,12 @@ class Outline:
         motion, model = self.attractor.motion, self.attractor.model
         if motion.section == ReturnSection.MAXIMA:
             return self
-        rows = velocity_maxima(model, motion.state(), 0.0, len(motion.returns) / motion.stop_rate[motion.block - 1])
-        returns = rows[rows[:, 1] == motion.block, 2:]
+        duration = len(motion.returns) / motion.stop_rate[motion.block - 1]
+        _, rows = velocity_maxima(model, motion.state(), 0.0, duration)
+        returns = rows[rows[:, 0] == motion.block, 2:]
         mirror_returns = returns[:0]
         if len(motion.mirror_returns):
-            images = rows[rows[:, 1] == model.blocks + 1 - motion.mirror_block, 2:]
+            images = rows[rows[:, 0] == model.blocks + 1 - motion.mirror_block, 2:]
             mirror_returns = images.reshape(-1, 2, model.blocks)[:, :, ::-1].reshape(images.shape)
         motion = replace(motion, returns=returns, mirror_returns=mirror_returns, section=ReturnSection.MAXIMA)
         own_image = self.attractor.symmetry == Symmetry.SYMMETRIC

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.model.uniform_sliding import eigenvalues, sliding_state
 from burridge_knopoff.motion.kind import (
     CHAOS,
     Motion,
@@ -21,7 +22,6 @@ from burridge_knopoff.motion.phase_locking import recurrence
 from burridge_knopoff.motion.section_returns import Returns, ReturnSection, returns_of, returns_without_stops, state_of
 from burridge_knopoff.motion.set_distance import SPACINGS, is_near, spacing_of
 from burridge_knopoff.motion.settings import EXPONENTS, MotionSettings
-from burridge_knopoff.motion.uniform_sliding import eigenvalues, sliding_state
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 
@@ -202,7 +202,7 @@ def _without_stops(motion: Motion, section: Returns, mean: float, settings: Moti
 
 def sliding_motion(model: Model) -> SteadyMotion:
     """Return uniform sliding as a motion; its exponents are the real parts of the eigenvalues of its Jacobian."""
-    state = sliding_state(model)[None]
+    state = sliding_state(model).vector()[None]
     return SteadyMotion(
         returns=state,
         mirror_returns=state if model.chain.is_mirror_symmetric else state[:0],

@@ -13,9 +13,10 @@ from enum import IntEnum
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.model.uniform_sliding import sliding_state
 from burridge_knopoff.motion.period import orbit_length, section_blocks
 from burridge_knopoff.motion.set_distance import SPACINGS, distance, spacing_of
-from burridge_knopoff.motion.uniform_sliding import sliding_state
+from burridge_knopoff.periodic_orbits.without_stops import velocity_maxima
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
@@ -168,33 +169,24 @@ def returns_of(
 
 def returns_without_stops(model: Model, start: ChainState, transient: float, window: float) -> Returns | None:
     """Return the maxima of the velocity of a block, or uniform sliding; None if a block sticks or has few maxima."""
-    end, sliding = transient + window, sliding_state(model)
+    end, sliding = transient + window, sliding_state(model).vector()
     last = new_ensemble(model).run(start.position[None], start.velocity[None], start.stuck[None], [end], 1)
     if last["event_count"][0] or not np.isfinite(last["position"]).all():
         return None
-    rows = velocity_maxima(model, start, transient, end)
+    times, rows = velocity_maxima(model, start, transient, end)
+    block, states = rows[:, 0].astype(int), rows[:, 2:]
     final = np.concatenate([last["position"][0, 0], last["velocity"][0, 0]])
-    latest = np.concatenate([rows[rows[:, 0] > transient + 0.5 * window, 2:], final[None]])
+    latest = np.concatenate([states[times > transient + 0.5 * window], final[None]])
     drift = float(np.abs(latest - sliding).max())
     if drift <= SLIDING_DISTANCE * model.scale:
         mirrored = sliding[None] if model.chain.is_mirror_symmetric else np.zeros((0, len(sliding)))
         none = np.zeros(model.blocks, dtype=int)
         return Returns(final[None], mirrored, 0.0, drift, none, window, section=ReturnSection.SLIDING)
-    block, states = rows[:, 1].astype(int), rows[:, 2:]
     highest = np.full(model.blocks, model.v)
     np.maximum.at(highest, block - 1, states[np.arange(len(rows)), model.blocks + block - 1])
     return returns_of(
-        model, window, rows[:, 0], block, lambda chosen: states[chosen], ReturnSection.MAXIMA, highest - model.v
+        model, window, times, block, lambda chosen: states[chosen], ReturnSection.MAXIMA, highest - model.v
     )
-
-
-def velocity_maxima(model: Model, start: ChainState, begin: float, end: float) -> np.ndarray:
-    """Return the maxima of the velocities of all blocks of a trajectory between two times.
-
-    The rows are time, block (1 … N), positions x_i and velocities U_i', shape (maxima, 2 + 2 blocks).
-    """
-    at = start.position[None], start.velocity[None], start.stuck[None]
-    return new_ensemble(model).maxima(*at, begin, end)
 
 
 def has_same_stop_shares(first: np.ndarray, second: np.ndarray) -> bool:

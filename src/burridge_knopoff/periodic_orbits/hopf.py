@@ -19,13 +19,13 @@ from scipy.optimize import brentq
 
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
+from burridge_knopoff.model.uniform_sliding import jacobian, sliding_state
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.following import interval_ends
 from burridge_knopoff.periodic_orbits.periodic import Constraint, PeriodicOrbit, missing_isolation_of, solve_return
 from burridge_knopoff.periodic_orbits.pseudo_arclength import line_of
 from burridge_knopoff.periodic_orbits.return_map import mirror_order
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
-from burridge_knopoff.periodic_orbits.without_stops import sliding_state
 from burridge_knopoff.values import instance_of
 
 # Number of parts of an interval, at the ends of which the signs of growth rates are compared.
@@ -144,13 +144,6 @@ def hopf_bifurcations(model: Model, interval: tuple[float, float], *, parameter:
     for root in {root for root, _ in found}:
         bifurcations += _bifurcations_at(model, parameter, root, [index for at, index in found if at == root])
     return sorted(bifurcations, key=lambda bifurcation: (bifurcation.value, -bifurcation.period))
-
-
-def jacobian(model: Model) -> np.ndarray:
-    """Return the Jacobian of the flow at uniform sliding, over positions and velocities, shape (2 blocks, 2 blocks)."""
-    chain, blocks, masses = model.chain, model.blocks, model.chain.masses[:, None]
-    damping = chain.damping_matrix + np.diag(chain.thresholds * float(model.law.slope(model.v)))
-    return np.block([[np.zeros((blocks, blocks)), np.eye(blocks)], [-chain.stiffness / masses, -damping / masses]])
 
 
 def _oscillations(model: Model, parameter: str, value: float) -> np.ndarray | None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.model.uniform_sliding import sliding_state
 from burridge_knopoff.running.ensemble import new_ensemble
 
 # Share of the largest amplitude of a velocity below which a block counts as at rest against the driver: a node of a
@@ -49,12 +50,6 @@ def time_to_fast_state(model: Model, state: ChainState, period: float) -> float:
     slowest = _velocities(model, state, period).min(axis=1)
     fastest = int(slowest.argmax())
     return 0.0 if slowest[0] >= 0.5 * (slowest.min() + slowest[fastest]) else fastest * (period / INSTANTS)
-
-
-def sliding_state(model: Model) -> ChainState:
-    """Return the state of uniform sliding."""
-    blocks = model.blocks
-    return ChainState(np.zeros(blocks), np.full(blocks, model.v), np.zeros(blocks, dtype=bool))
 
 
 def distance_from_sliding(model: Model, state: ChainState) -> np.ndarray:

@@ -11,7 +11,7 @@ from burridge_knopoff.dataset.columns import empty_columns
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
 from burridge_knopoff.model.parameters import plain_name
 from burridge_knopoff.model.sampling import fraction_interval
-from burridge_knopoff.motion.uniform_sliding import is_sliding_attracting
+from burridge_knopoff.model.uniform_sliding import is_sliding_attracting
 
 
 def branch_variables(parameter: str) -> dict[str, Variable]:

@@ -22,7 +22,7 @@ from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.laws.blend import mirror_law
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.motion.uniform_sliding import DIGITS, eigenvalues, round_digits
+from burridge_knopoff.model.uniform_sliding import DIGITS, eigenvalues, round_digits
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.summaries.sentences import lines_of, values_where
 

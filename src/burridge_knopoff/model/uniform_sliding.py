@@ -5,15 +5,23 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import eigvalsh, eigvalsh_tridiagonal
 
-from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.model import ChainState, Model
 
 # Significant digits of results of LAPACK, whose last bits depend on the machine.
 DIGITS = 12
 
 
-def sliding_state(model: Model) -> np.ndarray:
-    """Return positions x_i and velocities U_i' of uniform sliding, shape (2 blocks,)."""
-    return np.repeat([0.0, model.v], model.blocks)
+def sliding_state(model: Model) -> ChainState:
+    """Return the state of uniform sliding."""
+    blocks = model.blocks
+    return ChainState(np.zeros(blocks), np.full(blocks, model.v), np.zeros(blocks, dtype=bool))
+
+
+def jacobian(model: Model) -> np.ndarray:
+    """Return the Jacobian of the flow at uniform sliding, over positions and velocities, shape (2 blocks, 2 blocks)."""
+    chain, blocks, masses = model.chain, model.blocks, model.chain.masses[:, None]
+    damping = chain.damping_matrix + np.diag(chain.thresholds * float(model.law.slope(model.v)))
+    return np.block([[np.zeros((blocks, blocks)), np.eye(blocks)], [-chain.stiffness / masses, -damping / masses]])
 
 
 def weakening(model: Model) -> np.ndarray:
@@ -29,12 +37,8 @@ def eigenvalues(model: Model) -> np.ndarray:
     """
     stiffness, rates, root = model.chain.stiffness, weakening(model), np.sqrt(model.chain.masses)
     if model.chain.is_damped or (rates != rates[0]).any():
-        blocks, masses = model.blocks, model.chain.masses[:, None]
-        damped = np.diag(rates) - model.chain.damping_matrix / masses
-        jacobian = np.block([[np.zeros((blocks, blocks)), np.eye(blocks)], [-stiffness / masses, damped]])
-        spectrum = [
-            complex(round_digits(value.real), round_digits(value.imag)) for value in np.linalg.eigvals(jacobian)
-        ]
+        exact = np.linalg.eigvals(jacobian(model))
+        spectrum = [complex(round_digits(value.real), round_digits(value.imag)) for value in exact]
         return np.array(sorted(spectrum, key=lambda value: (abs(value.imag), value.imag < 0.0, -value.real)))
     half = 0.5 * rates[0]
     # The symmetric matrix M^(−1/2) K M^(−1/2) has the eigenvalues of M⁻¹K.
