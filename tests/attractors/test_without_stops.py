@@ -11,7 +11,18 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, find_attractors, label_states, law_of, simulate
+from burridge_knopoff import (
+    Chain,
+    ChainState,
+    Model,
+    MotionKind,
+    SearchSettings,
+    edge_state,
+    find_attractors,
+    label_states,
+    law_of,
+    simulate,
+)
 from burridge_knopoff.attractors.labels import label
 from burridge_knopoff.continuation.attractor_continuation import continue_attractors
 from burridge_knopoff.model.uniform_sliding import eigenvalues, is_sliding_attracting
@@ -220,3 +231,21 @@ def test_labels_without_stops_depend_on_no_other_state():
         sliding = attractors[0].motion.kind == MotionKind.SLIDING
         assert labels[0] == (0 if sliding else -1)
         assert (labels[1:] >= 0).all()
+
+
+def test_the_boundary_between_stick_slip_and_sliding_is_a_cycle_without_stops():
+    """Closed under SciPy; its multiplier is exp ∫ div dτ, since the other one is 1 (Liouville)."""
+    model = oscillator(1.5)
+    attractors, _ = find_attractors(model, replace(SETTINGS, velocity=(0.0, 1.5)))
+    sliding, sticking = (ChainState(np.zeros(1), np.array([speed]), np.zeros(1, dtype=bool)) for speed in (1.5, 0.1))
+    edge = edge_state(model, sliding, sticking, attractors)
+    assert (edge.kind, edge.sides) == (MotionKind.PERIODIC, ({0}, {1}))
+
+    def rate(_, y):
+        friction = math.exp(-3.0) - math.exp(-2.0 * y[1])
+        return [y[1] - 1.5, 0.5 * friction - y[0] - 0.1 * (y[1] - 1.5), math.exp(-2.0 * y[1]) - 0.1]
+
+    start = edge.orbit.reference.vector()
+    end = solve_ivp(rate, (0.0, edge.orbit.period), [*start, 0.0], method="DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+    np.testing.assert_allclose(end[:2], start, atol=1e-9)
+    assert abs(edge.multiplier[0]) == pytest.approx(math.exp(end[2]), rel=1e-7)

@@ -25,6 +25,7 @@ from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.labels import UNDETERMINED, label_arrays
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.periodic_orbits.flow import OrbitError, mean_distance
+from burridge_knopoff.periodic_orbits.without_stops import velocity_maxima
 from burridge_knopoff.running.derivative import missing_derivative
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
@@ -147,12 +148,18 @@ class EdgeTrack:
             self._follow()
 
     def events(self, since: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return times and values of the events from piece `since` on, in the form of the kernel."""
-        clock = np.cumsum([0.0, *(piece.duration for piece in self.pieces)])
-        numbers = range(since, len(self.pieces))
+        """Return times and values of the events from piece `since` on, in the form of the kernel.
+
+        Without events, they are those of the maxima of the velocities.
+        """
+        clock = np.cumsum([0.0, *(piece.duration for piece in self.pieces)])[since:-1]
+        pieces = self.pieces[since:]
+        events = [(piece.times, piece.values) for piece in pieces]
+        if not any(len(times) for times, _ in events):
+            events = [velocity_maxima(self.model, piece.start, 0.0, piece.duration) for piece in pieces]
         return (
-            np.concatenate([clock[k] + self.pieces[k].times for k in numbers]),
-            np.concatenate([self.pieces[k].values for k in numbers]),
+            np.concatenate([begin + times for begin, (times, _) in zip(clock, events, strict=True)]),
+            np.concatenate([values for _, values in events]),
         )
 
     def piece_at(self, time: float) -> int:
