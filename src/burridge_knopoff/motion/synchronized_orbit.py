@@ -60,14 +60,15 @@ def synchronized_orbits(model: Model) -> KnownOrbits:
     """
     if not model.chain.is_mirror_symmetric:
         raise OrbitError("chain: got a chain that is not its own mirror image, expected one that is")
-    seeds = [model.chain.a_unit * a for a in SEEDS]
+    seeds = [model.chain.a_unit * a for a in SEEDS] if model.law.has_a else [model.a]
     for find in (_single_cycle_orbit, _settled_orbit):
         for a in seeds:
             try:
                 return KnownOrbits(find(model_at(model, a)))
             except OrbitError:
                 continue
-    raise OrbitError(f"v = {model.v!r}: no synchronized periodic orbit at a = {', '.join(map(repr, seeds))}")
+    at = f" at a = {', '.join(map(repr, seeds))}" if model.law.has_a else ""
+    raise OrbitError(f"v = {model.v!r}: no synchronized periodic orbit{at}")
 
 
 def _state_at_rest(model: Model) -> ChainState:
