@@ -17,6 +17,7 @@ from burridge_knopoff import (
     plot,
     simulate,
     sweep,
+    synchronized_orbit,
 )
 from tests.friction_oscillator import BOX, CHAIN, FORMULA, NUMBERS, QUICK, SLIDING, oscillator
 from tests.refused import refused
@@ -103,6 +104,12 @@ def test_a_law_without_a_needs_none():
         find_attractors({"formula": "1 - a*u"}, samples=1)
     with pytest.raises(ValueError, match="w: unknown name, expected u$"):
         simulate({"formula": "1/(1 + w*u)"}, initial="minus")
+
+
+def test_the_synchronized_orbit_of_a_law_without_a():
+    """It is that of the same law at its a."""
+    orbit = synchronized_orbit({"formula": "1/(1 + 0.08*u)"})
+    assert orbit.period == pytest.approx(synchronized_orbit("nonlinear", 0.08).period, abs=1e-9)
 
 
 def test_velocities_that_a_tested_start_drops_are_told():

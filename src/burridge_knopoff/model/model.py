@@ -142,7 +142,8 @@ class Model(Unchanging):
         of_law: dict[str, Any] = {}
         for name, value in (parameters if a is None else {"a": a, **parameters}).items():
             stored = self._stored_parameter(name)
-            if name == "a" and not self.law.has_a and value != stored:
+            # Without its name, a is that of a grid over several laws, on which this law does not depend.
+            if name == "a" and a is None and not self.law.has_a:
                 raise self._no_parameter(name)
             if not isinstance(stored, float) and stored != NEIGHBOURS:
                 raise refusal(name, stored, _ONE_NUMBER)

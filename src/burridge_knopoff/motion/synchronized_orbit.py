@@ -61,14 +61,15 @@ def synchronized_orbits(model: Model) -> KnownOrbits:
     """
     if not model.chain.is_mirror_symmetric:
         raise OrbitError("chain: got a chain that is not its own mirror image, expected one that is")
-    seeds = [model.chain.a_unit * a for a in SEEDS]
-    for find, values in ((_single_cycle_orbit, seeds), (_settled_orbit, [*seeds, model.a])):
+    seeds = [model.chain.a_unit * a for a in SEEDS] if model.law.has_a else []
+    for find, values in ((_single_cycle_orbit, seeds or [model.a]), (_settled_orbit, [*seeds, model.a])):
         for a in values:
             try:
                 return KnownOrbits(find(model_at(model, a)))
             except OrbitError:
                 continue
-    raise OrbitError(f"v = {model.v!r}: no synchronized periodic orbit at a = {', '.join(map(repr, seeds))}")
+    at = f" at a = {', '.join(map(repr, seeds))}" if model.law.has_a else ""
+    raise OrbitError(f"v = {model.v!r}: no synchronized periodic orbit{at}")
 
 
 def _state_at_rest(model: Model) -> ChainState:
