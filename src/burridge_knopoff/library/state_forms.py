@@ -21,7 +21,7 @@ from burridge_knopoff.model.initial import (
     initial_state,
 )
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.running.cost import cost_note, is_stiff
+from burridge_knopoff.running.cost import cost_note, is_dense, is_stiff
 from burridge_knopoff.running.runner import check_state
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.trajectory import Trajectory
@@ -158,8 +158,8 @@ def begun_state(
 
 
 def warn_of_cost(model: Model, initial: InitialState | ChainState, settings: Settings) -> None:
-    """Warn of a run of more than a minute whose step is set by stiff dashpots or springs, before it starts."""
-    if is_stiff(model.chain):
+    """Warn of a run of more than a minute that stiff or very many springs or dashpots slow, before it starts."""
+    if is_stiff(model.chain) or is_dense(model.chain):
         begun = initial if isinstance(initial, ChainState) else model.begin(initial, settings.start)
         if note := cost_note(model, begun, settings):
             warnings.warn(note, stacklevel=3)
