@@ -122,6 +122,7 @@ benchmark: .venv/kernel .venv-benchmark/ready  ## print most tables of docs/perf
 	.venv-benchmark/bin/python benchmarks/peers.py
 	.venv-benchmark/bin/python benchmarks/lockstep.py
 	.venv-benchmark/bin/python benchmarks/chains.py
+	.venv-benchmark/bin/python benchmarks/dense.py
 	.venv-benchmark/bin/python benchmarks/lyapunov.py
 	.venv-benchmark/bin/python benchmarks/maps.py
 	$(BIN)/snakemake -c2

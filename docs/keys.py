@@ -15,6 +15,7 @@ from typing import Any
 import yaml
 
 from burridge_knopoff.laws import LAWS
+from burridge_knopoff.model.distances import KEYS as BY_DISTANCE
 from burridge_knopoff.model.fields import FOLLOWS, REQUIRED, Field, Keys
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.random_numbers import RandomNumbers
@@ -31,7 +32,7 @@ from burridge_knopoff.model.ranges import (
     TrueOrFalse,
     Whole,
 )
-from burridge_knopoff.model.springs import SpringsFile
+from burridge_knopoff.model.springs import NetworkSprings
 from burridge_knopoff.study.config import CONFIG, LawKeys
 
 ROOT = Path(__file__).parent.parent
@@ -222,8 +223,8 @@ def _(allowed: Text) -> Schema:
 
 
 @schema_of.register
-def _(allowed: SpringsFile) -> Schema:
-    return {"type": "string", "pattern": r"^[^\x00-\x1f]+$"}
+def _(allowed: NetworkSprings) -> Schema:
+    return {"anyOf": [schema_of(BY_DISTANCE), {"type": "string", "pattern": r"^[^\x00-\x1f]+$"}]}
 
 
 @schema_of.register

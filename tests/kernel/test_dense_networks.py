@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, ChainState, Model, law_of
-from burridge_knopoff.kernel._core import Catalogue
+from burridge_knopoff.kernel._core import Catalogue, Exponents
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import MOST_NUMBERS
@@ -100,3 +100,15 @@ def test_rounding_does_not_accumulate(tmp_path):
     time, block, _ = run(model, state, state.time + 2.0 * left.min(), groups=False)[1][:, 0]
     assert block == np.argmin(left)
     assert abs(time - (state.time + left.min())) * rate.max() < 2e-13
+
+
+@pytest.mark.parametrize("loading", ["steady", "quasistatic"])
+def test_exponents_in_groups_and_of_the_whole_network_agree(tmp_path, loading):
+    model = model_of(network(tmp_path / "springs.txt", 6))
+    growth = []
+    for groups in (True, False):
+        exponents = Exponents(model.blocks, 3, 0.0, np.array([0.0, 60.0]))
+        run(model, rest(model), 60.0, groups=groups, loading=loading, exponents=exponents)
+        growth.append(exponents.results()["growth"])
+    assert np.allclose(growth[0], growth[1], rtol=1e-5)
+    assert growth[0][0, 0] > 1.0

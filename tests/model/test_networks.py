@@ -285,3 +285,51 @@ def test_a_changed_file_gives_another_chain(tmp_path):
     read_edges.cache_clear()
     with refused(f"chain.springs: {path}", chain.springs[-16:]):
         _ = Chain(2, springs=chain.springs).neighbours
+
+
+@given(
+    st.sampled_from(["open", "ring", "grid"]),
+    st.integers(2, 9),
+    st.integers(1, 4),
+    st.one_of(st.none(), st.floats(1.0, 6.0)),
+)
+def test_springs_by_distance(shape, columns, rows, cut_off):
+    """Every pair of blocks within the cut-off is joined once."""
+    rows = rows if shape == "grid" else 1
+    where = {"grid": (columns, rows)} if shape == "grid" else {"blocks": columns, "ends": shape}
+    keys = {"distance": "9/r**3 + exp(-r)"} | ({} if cut_off is None else {"cut_off": cut_off})
+    chain = Chain(**where, springs=keys, pulling=0.5)
+    expected = np.zeros((columns * rows, columns * rows))
+    for i in range(columns * rows):
+        for k in range(columns * rows):
+            dx, dy = abs(i % columns - k % columns), abs(i // columns - k // columns)
+            r = np.hypot(min(dx, columns - dx) if shape == "ring" else dx, dy)
+            if i != k and r <= (cut_off or np.inf):
+                expected[i, k] = -(9.0 / r**3 + np.exp(-r))
+    expected += np.diag(0.5 - expected.sum(axis=1))
+    assert np.allclose(chain.stiffness, expected, rtol=1e-13)
+    assert Chain(**where, springs=chain.springs, pulling=0.5) == chain
+
+
+ALL_PAIRS = {"springs": {"distance": "1/r**3"}, "pulling": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("keys", "place"),
+    [
+        ({"pulling": "neighbours"}, "chain.pulling"),
+        ({"springs": {"distance": "9/q"}}, "chain.springs.distance: q"),
+        ({"springs": {"distance": "9/r,2"}}, "chain.springs.distance: '9/r,2'"),
+        ({"springs": {"cut_off": 2}}, "chain.springs.distance: missing"),
+        ({"springs": {"distance": "1/r", "cut_off": 0.5}}, "chain.springs.cut_off: 0.5"),
+        ({"springs": {"distance": "1/(r-2)"}, "blocks": 9}, "chain.springs.distance: -1 at r = 1"),
+        ({"blocks": 300}, "chain.springs.distance: 9.7059e-07 at r = 101"),
+        ({"blocks": 100_000}, "chain.springs: 5e+09 springs"),
+        ({"blocks": 1}, "chain.blocks: 1"),
+        ({"grid": (3, 3), "ends": "ring"}, "chain.ends: ring"),
+        ({"coupling": 2.0}, "chain.coupling: 2.0"),
+    ],
+)
+def test_refused_springs_by_distance(keys, place):
+    with refused(place):
+        Chain(**(ALL_PAIRS | keys))

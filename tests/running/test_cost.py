@@ -97,3 +97,15 @@ def test_nothing_is_said_of_the_chains_of_the_paper():
     study = load_study({"study": "one", "initial": {"minus": {}}, "grid": grid}, "one.yaml")
     costs = [line for line in remarks(study, {}) if line.startswith("each simulation: ")]
     assert [line.rpartition(", ")[2] for line in costs] == ["4e+06"]
+
+
+def test_the_cost_of_a_dense_network_names_its_springs():
+    """A grid of four neighbours is not dense; in a dense network an event costs something though all blocks stick."""
+    law, state = law_of("carlson_langer", 1.0, {"sigma": 0.2}), InitialState("alike", -0.9, 0.0)
+    settings = Settings(start="tested", transient=0.0, window=1e6, lyapunov_exponents=0)
+    notes = []
+    for springs in (None, {"distance": "9/r**3"}):
+        model = Model(Chain(grid=(16, 16), springs=springs, pulling=1.0), law, 0.01)
+        notes.append(cost_note(model, model.begin(state, "tested"), settings))
+    assert notes[0] == ""
+    assert notes[1].startswith("256 blocks, 32640 springs: about")

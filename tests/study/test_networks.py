@@ -92,3 +92,16 @@ def test_lists_are_limited_by_the_length_of_a_command():
     with refused("chain.mass", "1024"):
         load({"blocks": 2000, "mass": 2000 * [1]})
     assert load({"mass": 2}, {"one": {"position": -0.5, "velocity": 0}}).blocks == 1
+
+
+def test_springs_by_distance_keep_their_form():
+    """A list of positions still gives the number of blocks, and a record of the study repeats the config."""
+    study = load({"grid": [5, 5], "springs": {"distance": "9/r**3", "cut_off": 4}, "pulling": 1})
+    assert study.config["chain"]["springs"] == "distance=9/r**3,cut_off=4.0"
+    again = load_study(json.loads(json.dumps(study.config)), "elsewhere/study.json")
+    assert again.config == study.config
+    state = {"one": {"position": [-0.9, -0.8, -0.7, -0.6], "velocity": [0, 0, 0, 0]}}
+    row = load({"springs": {"distance": "1/r"}, "pulling": 1}, state)
+    assert (row.blocks, row.single_length_key) == (4, "")
+    with refused("config/mine.yaml: chain.pulling"):
+        load({"blocks": 4, "springs": {"distance": "1/r"}})

@@ -78,13 +78,13 @@ def draw(chain: Chain) -> Figure:
 def _words(chain: Chain) -> list[str]:
     """Return in words what is not drawn."""
     lines = []
-    if chain.ends == "ring":
+    if chain.springs:
+        lines.append("springs of a network couple the blocks to each other")
+    elif chain.ends == "ring":
         lines.append(f"a spring of strength ${chain.coupling_to_next[-1]:g}$ couples block {chain.blocks} to block 1")
     elif chain.grid:
         size = f"{chain.grid[0]} × {chain.grid[1]}"
         lines.append(f"springs of strength ${chain.coupling:g}$ couple a grid of {size} blocks")
-    elif chain.springs:
-        lines.append("springs of a network couple the blocks to each other")
     for values, where in ((chain.neighbours.damping, "between blocks"), (chain.driver_damping, "to the driver")):
         if values.any():
             strength = f"{values.min():g}" if np.ptp(values) == 0.0 else f"{values.min():g}$ to ${values.max():g}"

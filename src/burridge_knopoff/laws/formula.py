@@ -1,4 +1,4 @@
-"""Friction laws given by a formula. Python's parser reads it and a tape evaluates it; it is never run as code."""
+"""Formulas of friction laws and of springs. Python's parser reads them, a tape evaluates them: none is run as code."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ALLOWED = re.compile(r"[-+*/().\w ]+", re.ASCII)
 
 
 class FormulaError(ValueError):
-    """Raised for a formula that is not a friction law; the message gives the reason."""
+    """Raised for what is not a formula; the message gives the reason."""
 
 
 @lru_cache(maxsize=64)
@@ -29,15 +29,15 @@ def formula_names(formula: str) -> frozenset[str]:
     return frozenset(re.findall(r"\b[A-Za-z_]\w*", formula)) - set(FUNCTIONS)
 
 
-def compile_formula(formula: str, values: Mapping[str, float]) -> Tape:
-    """Return the tape of a formula in the speed u.
+def compile_formula(formula: str, values: Mapping[str, float], variable: str = "u") -> Tape:
+    """Return the tape of a formula in the speed u, or in another variable.
 
-    values : values of all other names, including `a`
+    values : values of all other names, for a law including `a`
     Raises FormulaError for syntax that is not allowed in a formula, and for names without a value.
     """
     tree, builder = _tree(formula), Builder()
     try:
-        terms = {"u": SPEED} | {key: number(x) for key, x in values.items()}
+        terms = {variable: SPEED} | {key: number(x) for key, x in values.items()}
         return builder.tape(_Reader(builder, formula.strip(), terms).read(tree))
     except (OverflowError, ZeroDivisionError):
         raise FormulaError("a constant term is not finite") from None

@@ -21,7 +21,7 @@ from burridge_knopoff.model.initial import (
     initial_state,
 )
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.running.cost import cost_note, is_stiff
+from burridge_knopoff.running.cost import cost_note, is_dense, is_stiff
 from burridge_knopoff.running.runner import check_state
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.trajectory import Trajectory
@@ -160,11 +160,11 @@ def begun_state(
 def warn_of_run(model: Model, initial: InitialState | ChainState, settings: Settings) -> None:
     """Warn, before it starts, of a run that drops given velocities, and of a long one.
 
-    A long one takes more than a minute, with a step that stiff dashpots or springs set.
+    A long one takes more than a minute, since springs or dashpots are stiff, or springs are very many.
     """
     if isinstance(initial, InitialState) and (remark := model.dropped_velocities(initial, settings.start)):
         warnings.warn(remark, stacklevel=4)
-    if is_stiff(model.chain):
+    if is_stiff(model.chain) or is_dense(model.chain):
         begun = initial if isinstance(initial, ChainState) else model.begin(initial, settings.start)
         if note := cost_note(model, begun, settings):
             warnings.warn(note, stacklevel=4)

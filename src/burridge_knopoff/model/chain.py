@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
 from burridge_knopoff.messages import refusal
+from burridge_knopoff.model.distances import is_by_distance, springs_by_distance
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.laplacian import Laplacian
 from burridge_knopoff.model.own_units import OwnUnits, own_units_of
@@ -22,7 +23,7 @@ from burridge_knopoff.model.springs import (
     MAXIMUM_BLOCKS,
     STRENGTH,
     Neighbours,
-    SpringsFile,
+    NetworkSprings,
     grid_neighbours,
     has_digest,
     network_neighbours,
@@ -59,7 +60,8 @@ class Chain(Unchanging):
     A row has N − 1 springs between neighbours; spring i joins blocks i and i + 1. A ring has N springs; the last one
     joins the last block to the first. A grid of nx × ny blocks has open edges; block 1 + ix + nx·iy is in column ix and
     row iy, both counted from 0. A file of springs has one line for each spring, `block block strength` or
-    `block block strength damping`, with blocks numbered from 1. A block of mass m obeys m U'' = F − threshold · Φ(U')
+    `block block strength damping`, with blocks numbered from 1. Springs by distance join all blocks of a row, a ring (r
+    is the arc) or a grid, `{"distance": "9/r**3", "cut_off": 5}`. A block of mass m obeys m U'' = F − threshold · Φ(U')
     while it slips, and sticks while F is at most its threshold.
 
     The force on block i is F_i = s_i + d_i. The spring force is s_i = D_i vτ − (K U)_i, where K is the graph Laplacian
@@ -83,6 +85,8 @@ class Chain(Unchanging):
     (False, True)
     >>> Chain(grid=(2, 2)).neighbours.index.tolist()
     [1, 2, 0, 3, 3, 0, 2, 1]
+    >>> Chain(3, springs={"distance": "8/r**3"}, pulling=1.0).stiffness.tolist()
+    [[10.0, -8.0, -1.0], [-8.0, 17.0, -8.0], [-1.0, -8.0, 10.0]]
     """
 
     blocks: Annotated[
@@ -110,10 +114,11 @@ class Chain(Unchanging):
         Sequence[int] | None, Several(_SIDE, 2, 2), "[nx, ny]: nx columns and ny rows of blocks, instead of a row"
     ] = None
     springs: Annotated[
-        str | None,
-        SpringsFile(),
+        str | Mapping[str, Any] | None,
+        NetworkSprings(),
         "file with the springs between blocks, instead of a row: lines `block block strength`, blocks numbered from 1; "
-        "an optional fourth column gives the dashpot in parallel with each spring",
+        "an optional fourth column gives the dashpot in parallel with each spring. Or springs between all blocks of a "
+        "row, ring or grid, with their strength as a formula of the distance r, up to `cut_off`",
     ] = None
     damping: Annotated[
         float | Sequence[float],
@@ -126,9 +131,9 @@ class Chain(Unchanging):
     ] = 0.0
 
     def __post_init__(self) -> None:
-        is_new = isinstance(self.springs, str) and not has_digest(self.springs)
+        is_new = self.springs is not None and not (isinstance(self.springs, str) and has_digest(self.springs))
         check_fields(self, "chain.")
-        if self.grid and self.springs:
+        if self.grid and self.springs and not self._is_by_distance:
             raise refusal("chain.grid", list(self.grid), "none together with chain.springs")
         if self.grid and math.prod(self.grid) > MAXIMUM_BLOCKS:
             raise refusal("chain.grid", list(self.grid), f"at most {MAXIMUM_BLOCKS} blocks")
@@ -149,13 +154,16 @@ class Chain(Unchanging):
         if not isinstance(self.pulling, str) and np.max(self.pulling) < STRENGTH.least:
             allowed = f"a number above 0 for at least one block, {STRENGTH.least:g} or more"
             raise refusal("chain.pulling", self.pulling, allowed)
+        if self._is_by_distance and self.pulling == NEIGHBOURS:
+            raise refusal("chain.pulling", NEIGHBOURS, "a number, or one per block, together with springs by distance")
         if is_new:
             self.check_springs()
 
     def _check_network(self) -> None:
-        option = "chain.grid" if self.grid else "chain.springs"
-        if self.ends != "open":
-            raise ValueError(f"chain.ends: got {self.ends}, expected open together with {option}")
+        option = "chain.springs" if self.springs else "chain.grid"
+        if self.ends != "open" and (self.grid or not self._is_by_distance):
+            with_key = "chain.grid" if self.grid else option
+            raise ValueError(f"chain.ends: got {self.ends}, expected open together with {with_key}")
         for key in ("coupling", "damping"):
             value, usual = getattr(self, key), 1.0 if key == "coupling" else 0.0
             if isinstance(value, tuple):
@@ -168,12 +176,18 @@ class Chain(Unchanging):
             if self.blocks not in (None, count):
                 raise ValueError(f"chain.blocks: got {self.blocks}, expected {count} for chain.grid {list(self.grid)}")
             object.__setattr__(self, "blocks", count)
+        elif self.blocks is None and self._is_by_distance:
+            object.__setattr__(self, "blocks", BLOCKS)
         elif self.blocks is None:
             first, second, *_ = read_edges(str(self.springs))
             object.__setattr__(self, "blocks", int(max(first.max(), second.max())) + 1)
 
+    @property
+    def _is_by_distance(self) -> bool:
+        return is_by_distance(self.springs)  # type: ignore[arg-type]
+
     def check_springs(self) -> None:
-        """Read the file of springs, if there is one.
+        """Read the file of springs, or make the springs by distance, if there are any.
 
         Raises ValueError, one line, if it is not a list of springs between these blocks, and if the driver pulls no
         block of a connected part, since K is then singular.
@@ -267,12 +281,15 @@ class Chain(Unchanging):
         The order is previous, next in a row or ring; left, right, down, up in a grid; ascending in a network from a
         file. The two blocks of a ring of two are joined by two springs.
         """
+        columns, rows = self.grid or (self.blocks, 1)
+        if self._is_by_distance:
+            joined = springs_by_distance(str(self.springs), columns, rows, self.ends == "ring", STRENGTH)
+            return network_neighbours(*joined, np.zeros(len(joined[0])), self.blocks)
         if self.grid:
-            columns, rows = self.grid
             return grid_neighbours(columns, rows, float(self.coupling), float(self.damping))  # type: ignore[arg-type]
         if self.springs is None:
             return row_neighbours(self.coupling_to_previous, self._shift_to_next(self.damping))
-        first, second, strength, damping = read_edges(self.springs)
+        first, second, strength, damping = read_edges(str(self.springs))
         largest = int(max(first.max(), second.max())) + 1
         if largest > self.blocks:
             raise ValueError(f"chain.springs: got block {largest}, expected at most chain.blocks ({self.blocks})")

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from burridge_knopoff.model.distances import distance_form
 from burridge_knopoff.model.ranges import Number, Range
 from burridge_knopoff.values import read_only_copy
 
@@ -87,20 +88,24 @@ def network_neighbours(
     return Neighbours(*map(read_only_copy, (start.astype(np.int64), index[order].astype(np.int64), *numbers)))
 
 
-class SpringsFile(Range):
-    """The name of a file of springs. Its form ends with a digest of the content: `faults.txt@0123456789abcdef`.
+class NetworkSprings(Range):
+    """Springs by distance, see `distance_form`, or the name of a file of springs.
+
+    The form of a file ends with a digest of the content: `faults.txt@0123456789abcdef`.
 
     With the digest a changed file is a different value, so that results of the old file are out of date. A file whose
     name already has a digest is not read until its springs are needed.
     """
 
     def _fit(self, value: Any, key: str) -> str | None:
+        if form := distance_form(value, key):
+            return form
         if not isinstance(value, str) or not value or not value.isprintable():
             return None
         return value if has_digest(value) else f"{value}@{_digest(_content(value))}"
 
     def __str__(self) -> str:
-        return "name of a text file"
+        return "name of a text file or {distance, cut_off}"
 
 
 def has_digest(springs: str) -> bool:
@@ -112,7 +117,7 @@ def has_digest(springs: str) -> bool:
 def read_edges(springs: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return the springs of a file: the two blocks (0 …) that each spring joins, its strength and its dashpot.
 
-    springs : name of the file and digest, as `SpringsFile` returns it
+    springs : name of the file and digest, as `NetworkSprings` returns it
 
     Raises ValueError, one line, if the file cannot be read, has other content, or is not a list of springs.
     """

@@ -9,6 +9,10 @@ from burridge_knopoff.running.settings import Settings
 # Measured (docs/performance.md): events per block and time unit; CPU seconds per event and block of its group, without
 # perturbations and for each perturbation; memory per block; CPU seconds per step of rk4 and block.
 EVENTS, SECONDS, SECONDS_OF_PERTURBATION, BYTES, SECONDS_OF_STEP = 0.2, 1.5e-7, 1e-7, 4500.0, 6.5e-8
+#: In a dense network: CPU seconds per event and block, and in addition for each block that slips; memory per spring.
+SECONDS_OF_DENSE, SECONDS_OF_PULL, BYTES_OF_SPRING = 2.5e-7, 1e-8, 200.0
+#: Mean number of neighbours from which on the springs of a network decide what it costs.
+DENSE = 8.0
 #: Expansions per time unit and unit of the highest rate of a chain, each as expensive as an event: 0.1 to 0.6 in chains
 #: of 1 to 40 blocks whose dashpots or springs are stiff.
 EXPANSIONS = 0.2
@@ -24,7 +28,13 @@ def cost_of(model: Model, begun: ChainState, settings: Settings) -> tuple[float,
     """
     together = int((~begun.stuck).sum())
     event = together * (SECONDS + settings.exponent_count(model.chain) * SECONDS_OF_PERTURBATION)
-    return max(EVENTS * model.blocks, _expansions(model.chain)) * event, BYTES * model.blocks
+    memory = BYTES * model.blocks
+    if is_dense(model.chain):
+        entries = len(model.chain.neighbours.index)
+        # Forces change on all blocks of the network, or on the neighbours of a block and theirs.
+        event += min(model.blocks, (entries / model.blocks) ** 2) * (SECONDS_OF_DENSE + together * SECONDS_OF_PULL)
+        memory += BYTES_OF_SPRING * 0.5 * entries
+    return max(EVENTS * model.blocks, _expansions(model.chain)) * event, memory
 
 
 def run_seconds(model: Model, begun: ChainState, settings: Settings) -> float:
@@ -44,6 +54,11 @@ def is_stiff(chain: Chain) -> bool:
     return stiffness(chain) > 10.0
 
 
+def is_dense(chain: Chain) -> bool:
+    """Return whether a network has so many springs that they decide what it costs."""
+    return chain.is_network and len(chain.neighbours.index) > DENSE * chain.blocks
+
+
 def _expansions(chain: Chain) -> float:
     return EXPANSIONS * chain.highest_rate
 
@@ -57,8 +72,10 @@ def cost_note(model: Model, begun: ChainState, settings: Settings) -> str:
     if settings.solver == "rk4" or seconds * settings.duration <= LONG:
         return ""
     whole = f"{_time(seconds)} per time unit, {_time(seconds * settings.duration)} for the run if they keep slipping"
-    blocks = f"{model.blocks} block{'s' * (model.blocks > 1)}: about {whole}"
-    if not is_stiff(model.chain):
+    dense = is_dense(model.chain)
+    springs = f", {len(model.chain.neighbours.index) // 2} springs" if dense else ""
+    blocks = f"{model.blocks} block{'s' * (model.blocks > 1)}{springs}: about {whole}"
+    if dense or not is_stiff(model.chain):
         return f"{blocks}; {1e-9 * memory:.2g} GB in addition to the recorded events"
     rate, frequency = model.chain.highest_rate, model.chain.highest_frequency
     fastest = f"decay rate of the dashpots, {rate - frequency:.2g}" if rate > 2.0 * frequency else ""

@@ -12,6 +12,7 @@ from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.messages import refusal
+from burridge_knopoff.model.distances import is_by_distance
 from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.springs import has_digest
 from burridge_knopoff.motion.chain_settings import Sample
@@ -52,7 +53,7 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
     chain_keys = config.get("chain")
     springs = chain_keys.get("springs") if isinstance(chain_keys, Mapping) else None
     # The config of a record names the file of springs with the digest of its content.
-    is_new = isinstance(springs, str) and not has_digest(springs)
+    is_new = isinstance(springs, str) and not has_digest(springs) and not is_by_distance(springs)
     # A name that cannot be printed is refused below.
     if isinstance(chain_keys, Mapping) and is_new and f"{springs}".isprintable():
         config = {**config, "chain": {**chain_keys, "springs": display_path(folder / f"{springs}")}}
@@ -78,7 +79,7 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
     if is_new:
         chain.check_springs()
     # Results may be read on a machine without the file of springs, which was checked when the study ran.
-    has_springs = chain.springs is None or is_new
+    has_springs = is_new or not has_digest(f"{chain.springs}")
     for law in study.laws if has_springs else ():
         for block_chain in chains:
             study.settings(law).check_chain(block_chain)

@@ -8,7 +8,7 @@ from typing import Any
 from burridge_knopoff.model.initial import PAPER_V, PaperState, has_paper_numbers
 from burridge_knopoff.model.parameters import remarks_on_states
 from burridge_knopoff.provenance.record import read_study_record
-from burridge_knopoff.running.cost import cost_note, is_stiff
+from burridge_knopoff.running.cost import cost_note, is_dense, is_stiff
 from burridge_knopoff.study.stages import missing_library
 from burridge_knopoff.study.study import Study
 
@@ -25,12 +25,12 @@ def remarks(study: Study, config: Mapping[str, Any]) -> list[str]:
 
 
 def _cost_remarks(study: Study) -> list[str]:
-    """Return the cost of a run of the stiffest chain, if that is over a minute."""
+    """Return the cost of a run of the stiffest chain, or of a dense network, if that is over a minute."""
     law, initial = study.laws[0], study.initial[0]
     chains = study.other_values[: 1 if study.has_one_chain else None]
     models = [study.model(law, study.shown_a, **others) for others in chains]
     stiffest, settings = max(models, key=lambda model: model.chain.highest_rate), study.settings(law)
-    if not is_stiff(stiffest.chain):
+    if not (is_stiff(stiffest.chain) or is_dense(stiffest.chain)):
         return []
     note = cost_note(stiffest, stiffest.begin(study.state(initial), settings.start), settings)
     return [f"each simulation: {note}"] if note else []

@@ -16,6 +16,7 @@ from burridge_knopoff.basins.initial_phases import has_free_ends
 from burridge_knopoff.laws import LAWS, law_of, unknown_law
 from burridge_knopoff.messages import cut, refusal, suggestion
 from burridge_knopoff.model.chain import BLOCKS, Chain
+from burridge_knopoff.model.distances import is_by_distance
 from burridge_knopoff.model.fields import Field, Keys
 from burridge_knopoff.model.initial import PAPER_STATES, PAPER_V, initial_state
 from burridge_knopoff.model.model import Model
@@ -82,7 +83,8 @@ def fill_blocks(config: Mapping[str, Any]) -> None:
     if len({*lists.values()}) > 1:
         counts = ", ".join(f"{name}: {count}" for name, count in lists.items())
         raise ValueError(f"initial: got different numbers of positions ({counts}), expected one for all states")
-    if not {"blocks", "grid", "springs"} & chain.keys():
+    has_file = "springs" in chain and not is_by_distance(chain["springs"])
+    if not {"blocks", "grid"} & chain.keys() and not has_file:
         chain["blocks"] = next(iter(lists.values()), max(count or 0 for count in blocks.values()))
         if not chain["blocks"]:
             raise ValueError("chain.blocks: missing, expected the number of blocks, which random states do not fix")

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.distances import is_by_distance
 from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.initial import InitialState, initial_state
 from burridge_knopoff.model.model import Model
@@ -189,7 +190,10 @@ class Study:
     def single_length_key(self) -> str:
         """Key of the chain that fixes its length, a list or a file of springs; empty if there is none."""
         chain = self.config["chain"]
-        return next((key for key, value in chain.items() if isinstance(value, list) or key == "springs"), "")
+        is_file = "springs" in chain and not is_by_distance(chain["springs"])
+        return next(
+            (key for key, value in chain.items() if isinstance(value, list) or (key == "springs" and is_file)), ""
+        )
 
     @property
     def marked_states(self) -> dict[str, list[tuple[float, float]]]:
