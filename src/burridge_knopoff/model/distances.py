@@ -14,7 +14,7 @@ from burridge_knopoff.model.ranges import Number, Text
 from burridge_knopoff.values import number_in
 
 PREFIX = "distance="
-#: Most springs in a network: their lists, two entries a spring, take 5 GB.
+#: Most springs in a network: a run with so many takes 30 GB of memory.
 MOST_SPRINGS = 50_000_000
 
 KEYS = Keys(

@@ -10,7 +10,7 @@ from burridge_knopoff.running.settings import Settings
 # perturbations and for each perturbation; memory per block; CPU seconds per step of rk4 and block.
 EVENTS, SECONDS, SECONDS_OF_PERTURBATION, BYTES, SECONDS_OF_STEP = 0.2, 1.5e-7, 1e-7, 4500.0, 6.5e-8
 #: In a dense network: CPU seconds per event and block, and in addition for each block that slips; memory per spring.
-SECONDS_OF_DENSE, SECONDS_OF_PULL, BYTES_OF_SPRING = 2.5e-7, 1e-8, 200.0
+SECONDS_OF_DENSE, SECONDS_OF_PULL, BYTES_OF_SPRING = 2.5e-7, 1e-8, 600.0
 #: Mean number of neighbours from which on the springs of a network decide what it costs.
 DENSE = 8.0
 #: Expansions per time unit and unit of the highest rate of a chain, each as expensive as an event: 0.1 to 0.6 in chains
