@@ -33,7 +33,7 @@ def coexisting_attractors(
     continuation = continue_attractors([model], settings, motion, starts=starts, start=start)
     if not continuation.attractors[0]:
         raise ValueError(
-            f"transient: got {settings.transient:g}, at which no attractor was found at a = {model.a!r}; expected a "
+            f"transient: got {settings.transient:g}, at which no attractor was found at {model.place}; expected a "
             f"longer one, or more than window {settings.window:g}, time_limit {settings.time_limit:g}, samples "
             f"{settings.samples} (if friction does not depend on speed there is no attractor)"
         )
