@@ -40,6 +40,9 @@ class MapModel:
     def begin(self, state, start="moving"):
         return ChainState(np.array(state.position), np.full(1, 0.1), np.zeros(1, dtype=bool))
 
+    def check_directions(self, *_):
+        """Any velocity is allowed."""
+
     def stuck_blocks(self, position, velocity, start):
         return np.zeros(position.shape, dtype=bool)
 

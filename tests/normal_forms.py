@@ -50,7 +50,7 @@ class NormalForm:
     jumps: bool = False
     a: float = CRITICAL
 
-    name = "map"
+    name, has_a = "map", True
     parameters = MappingProxyType({})
 
     def __call__(self, speed):

@@ -16,7 +16,7 @@ from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.running.status import Status
 from tests.claims.worlds import Summaries, count_sections, evidence, judge_means, paper_world
 
-UNDETERMINED, _, PERIODIC, QUASIPERIODIC, CHAOTIC, TRANSIENT, _ = MotionKind
+UNDETERMINED, _, PERIODIC, QUASIPERIODIC, CHAOTIC, TRANSIENT, *_ = MotionKind
 ONE_OF_MANY = 0.03
 Alteration = Callable[[Summaries], None]
 

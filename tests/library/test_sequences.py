@@ -23,6 +23,7 @@ from burridge_knopoff import (
     fit_slope,
     follow,
     follow_bifurcation,
+    hopf_bifurcations,
     label_states,
     locate_bifurcations,
     record_events,
@@ -96,6 +97,7 @@ NUMBERS = {
         lambda x: [p.value for p in follow("linearized", 0.08, [0.0799, 0.0801], initial=x)],
     ),
     "follow.interval": (ENDS, lambda x: [len(follow(CALLS["follow"]["orbit"], x))]),
+    "hopf_bifurcations.interval": (ENDS, lambda x: [len(hopf_bifurcations(MODEL, x))]),
 }
 #: {argument: a list of other things that it takes, and what comes of them}
 THINGS = {
