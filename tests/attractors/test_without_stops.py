@@ -249,3 +249,23 @@ def test_the_boundary_between_stick_slip_and_sliding_is_a_cycle_without_stops():
     end = solve_ivp(rate, (0.0, edge.orbit.period), [*start, 0.0], method="DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
     np.testing.assert_allclose(end[:2], start, atol=1e-9)
     assert abs(edge.multiplier[0]) == pytest.approx(math.exp(end[2]), rel=1e-7)
+
+
+@pytest.mark.parametrize("v", [0.7453, 0.74535, 0.745355])
+def test_the_amplitude_next_to_the_hopf_point_is_that_of_the_normal_form(v):
+    """Friction 1 − a u + b u³: the amplitude A of the velocity has A² = 4 (a − 3 b v²)/(3 b) to leading order."""
+    law = law_of("cubic", 0.5, formula="1 - a*u + b*u**3", b=0.3)
+    model = Model(Chain(1, pulling=1.0), law, v)
+    attractors, labels = find_attractors(model, SearchSettings(samples=4))
+    assert labels.tolist() == [0] * 4
+    amplitude = attractors[0].motion.returns[:, 1] - v
+    theory = math.sqrt(4.0 * (0.5 - 0.9 * v**2) / 0.9)
+    np.testing.assert_allclose(amplitude, theory, rtol=3.0 * theory**2 + 1e-4)
+
+
+@pytest.mark.parametrize("v", [0.745, 0.7454, 0.746])
+def test_a_run_next_to_the_hopf_point_is_on_no_torus(v):
+    """One block has a plane of states."""
+    law = law_of("cubic", 0.5, formula="1 - a*u + b*u**3", b=0.3)
+    state = {"position": [0.3], "velocity": [0.9]}
+    assert simulate(Model(Chain(1, pulling=1.0), law, v), initial=state).kind == MotionKind.UNDETERMINED

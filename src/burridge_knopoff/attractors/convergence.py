@@ -15,9 +15,19 @@ from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.classification import Classifier
 from burridge_knopoff.motion.kind import CHAOS, periodic_orbit_kind, synchronization_distance
 from burridge_knopoff.motion.observables import SteadyMotion
-from burridge_knopoff.motion.section_returns import Returns, ReturnSection, has_same_stop_shares, visit
+from burridge_knopoff.motion.period import orbit_length
+from burridge_knopoff.motion.section_returns import (
+    Returns,
+    ReturnSection,
+    has_same_stop_shares,
+    returns_without_stops,
+    visit,
+)
 from burridge_knopoff.motion.set_distance import SPACINGS, is_near, minimum_distance
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
+from burridge_knopoff.periodic_orbits.flow import OrbitError
+from burridge_knopoff.periodic_orbits.periodic import find_periodic_orbit
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
 # Drift, in resolutions, up to which a motion that has not converged is followed for longer. It is undetermined if it
 # still drifts after that.
@@ -153,6 +163,19 @@ class Convergence:
         ended = later.has_periodic_spacing(self.tolerance) and later.is_settled(self.tolerance, self.resolution)
         stays = not ended and (chaotic or has_same_stop_shares(later.stop_count, section.stop_count))
         return (section, motion) if stays or again == self.trials else self.measure(later, again + 1)
+
+    def exact_returns(self, section: Returns) -> Returns | None:
+        """Return those of the periodic orbit without stops that a motion approaches; None if there is none.
+
+        Next to the Hopf bifurcation of uniform sliding a motion approaches it too slowly to have settled.
+        """
+        length = orbit_length(section.returns, 10.0 * self.tolerance, len(section.returns) - 1)
+        period = float(section.times[-1] - section.times[-1 - length])
+        try:
+            orbit = find_periodic_orbit(self.model, section.state(), period, Symmetry.ASYMMETRIC)
+        except OrbitError:
+            return None
+        return returns_without_stops(self.model, orbit.reference, 0.0, section.window)
 
     def measuring_window(self, section: Returns) -> float:
         """Return the window in which a motion is measured; for a long orbit, the window in which it has repeated."""

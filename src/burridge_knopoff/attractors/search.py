@@ -311,7 +311,9 @@ class Search(Convergence):
 
     def _add(self, section: Returns) -> bool:
         """Add a converged motion, and its mirror image if different, and return whether they are attractors."""
-        measured = self.measure(section)
+        closed = section.has_periodic_spacing(self.tolerance)
+        exact = self.exact_returns(section) if section.section == ReturnSection.MAXIMA and closed else section
+        measured = self.measure(exact) if exact is not None else None
         if measured is None:
             return False
         for candidate in self.candidates(*measured):

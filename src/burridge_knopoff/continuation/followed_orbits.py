@@ -159,7 +159,7 @@ def _periodic_orbit(model: Model, position: np.ndarray, velocity: np.ndarray) ->
             # A slowly attracting orbit is distinguished from nearby ones only after a longer time.
             orbit = limit_cycle(model, state, LONG_SETTLING)
         if multipliers(orbit).unstable_count:
-            raise OrbitError(f"a = {model.a:.12g}: the periodic orbit next to the motion is unstable")
+            raise OrbitError(f"{model.place}: the periodic orbit next to the motion is unstable")
     except OrbitError as error:
         return str(error)
     orbit.forget_events()

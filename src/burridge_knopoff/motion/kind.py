@@ -151,12 +151,20 @@ def motion_of_completed_run(run: Mapping[str, Any], mean_distance: float, settin
     - Periodic motion is synchronized, or periodic up to the longest period and quasiperiodic beyond.
     - A largest exponent that is certain to be negative is that of uniform sliding, the only equilibrium, whose section
       points are rounding.
-    - All other motion is undetermined. This includes a largest exponent above `zero_exponent` but within its error.
+    - All other motion is undetermined. This includes a largest exponent above `zero_exponent` but within its error, and
+      motion without repetition of a single block, or without stops and with a largest exponent that is negative beyond
+      its error: neither is a torus.
     """
     exponents = run["lyapunov_exponent"], run["lyapunov_error"]
     motion = motion_of_repetition(repetition_of(run, settings), mean_distance, *exponents, settings)
+    exponent, error = exponents
+    stops, blocks = len(run["event_time"]) > 0, np.shape(run["event_position"])[1]
     # A run that stops within its window has not reached uniform sliding.
-    return Motion(MotionKind.UNDETERMINED) if motion.kind == MotionKind.SLIDING and len(run["event_time"]) else motion
+    excluded = motion.kind == MotionKind.SLIDING and stops
+    if motion.kind == MotionKind.QUASIPERIODIC and not math.isfinite(motion.period):
+        decays = not stops and len(exponent) and exponent[0] < -settings.standard_errors * error[0]
+        excluded |= blocks == 1 or bool(decays)
+    return Motion(MotionKind.UNDETERMINED) if excluded else motion
 
 
 def motion_of_repetition(

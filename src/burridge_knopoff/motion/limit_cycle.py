@@ -97,14 +97,14 @@ def _orbit_without_stops(model: Model, state: ChainState, window: float) -> Peri
     Raises OrbitError, with the reason, if the motion slides uniformly or is neutral.
     """
     if np.abs(distance_from_sliding(model, state)).max() <= CLOSENESS[0]:
-        raise OrbitError(f"a = {model.a:.12g}: no periodic orbit found: the motion settles on uniform sliding")
+        raise OrbitError(f"{model.place}: no periodic orbit found: the motion settles on uniform sliding")
     for part, accepted in ((PART * window, _is_on_stable_orbit), (window, _is_on_orbit)):
         times, values = velocity_maxima(model, state, 0.0, part)
         if (orbit := orbit_of_events(model, times, values, accepted)) is not None:
             return orbit
         closest = next(_close_returns(model, times, values), None)
         if closest is not None and (reason := missing_isolation(model, *closest[:2])):
-            raise OrbitError(f"a = {model.a:.12g}: no isolated periodic orbit found: {reason}")
+            raise OrbitError(f"{model.place}: no isolated periodic orbit found: {reason}")
     return None
 
 

@@ -68,8 +68,8 @@ def synchronized_orbits(model: Model) -> KnownOrbits:
                 return KnownOrbits(find(model_at(model, a)))
             except OrbitError:
                 continue
-    at = f" at a = {', '.join(map(repr, seeds))}" if model.law.has_a else ""
-    raise OrbitError(f"v = {model.v!r}: no synchronized periodic orbit{at}")
+    at = f", nor at a = {', '.join(map(repr, seeds))}" if seeds else ""
+    raise OrbitError(f"{model.place}, v = {model.v!r}: no synchronized periodic orbit{at}")
 
 
 def _state_at_rest(model: Model) -> ChainState:

@@ -125,7 +125,8 @@ def settle(
     lasting = xarray.where(reached["mean_distance"] < threshold, MotionKind.SYNCHRONIZED_CHAOS, MotionKind.CHAOTIC)
     finer = xarray.where(reached["kind"] == MotionKind.TRANSIENT_CHAOS, lasting, reached["kind"])
     same = xarray.apply_ufunc(is_same_result, motion["kind"], finer)
-    replaced = agrees & finer.isin((*REGULAR, *CHAOS)) & (motion["kind"].isin(UNDECIDED_KINDS) | same)
+    is_kind = finer.isin((*REGULAR, *CHAOS, MotionKind.SLIDING))
+    replaced = agrees & is_kind & (motion["kind"].isin(UNDECIDED_KINDS) | same)
     replaced |= (
         has_attractor & finer.isin(SYNCHRONOUS) & (mean < reached.attrs["resolution"] * reached.attrs["v"] / 0.1)
     )
