@@ -31,13 +31,14 @@ def attractor_table(attractors: xarray.Dataset, columns: dict[str, list[str]], w
             attractor["period"].item(),
             MotionKind(attractor["kind"].item()),
         )
+        exponent = attractor["lyapunov_exponent"].values
         locked = kind == MotionKind.QUASIPERIODIC and np.isfinite(period)
         rows.append(
             (
                 branch_label(attractors, attractor["branch"].item(), attractor["side"].item()),
                 f"{kind.words}{f' {points}' if points else f', locked: period {period:.5g}' if locked else ''}",
                 to_ascii(with_error(attractor["mean_distance"].item(), attractor["mean_distance_error"].item())),
-                " ".join(f"{value:z7.4f}" for value in attractor["lyapunov_exponent"].values),
+                " ".join(f"{value:z7.4f}" for value in exponent[~np.isnan(exponent)]),
                 *(column[slot] for column in columns.values()),
             )
         )
