@@ -24,7 +24,6 @@ from burridge_knopoff.dataset.variables import (
     write_variables,
     xarray_variables,
 )
-from burridge_knopoff.laws.formula import formula_names
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import Model
@@ -187,11 +186,6 @@ def model_attributes(model: Model) -> dict[str, Any]:
         **{f"law_{key}": value for key, value in model.law.parameters.items()},
         **{f"chain_{key}": value for key in CHAIN_OPTIONS if (value := getattr(model.chain, key)) is not None},
     }
-
-
-def has_a(attributes: Mapping[str, Any]) -> bool:
-    """Return whether the law that attributes describe contains a, or may contain it."""
-    return "a" in formula_names(attributes.get("law_formula", "a"))
 
 
 def run_coordinates(attributes: Mapping[str, Any]) -> dict[str, tuple[Variable, Any]]:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from burridge_knopoff.dataset.point import POINT_VARIABLES, has_a, point_attributes, point_values, run_coordinates
+from burridge_knopoff.dataset.law_attributes import has_a
+from burridge_knopoff.dataset.point import POINT_VARIABLES, point_attributes, point_values, run_coordinates
 from burridge_knopoff.dataset.variables import PERIOD, Variable, flag
 from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings, takes_model
 from burridge_knopoff.library.model_forms import GivenLaw, model_of

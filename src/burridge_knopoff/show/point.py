@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.point import has_a
+from burridge_knopoff.dataset.law_attributes import has_a
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.motion.kind import format_motion, motion_of_run
 from burridge_knopoff.motion.settings import MotionSettings
