@@ -50,8 +50,9 @@ def plain(text):
 
 @pytest.mark.slow
 def test_a_terminal_shows_stages_and_time_left(study):
-    command = [argument for argument in study.command(*[]) if argument != "--nocolor"]
-    # Enough points for the display to be redrawn before the last one.
+    # Points that take long enough for the display to be redrawn before the last one.
+    command = study.command("--config", "window=1e5", "sampling=10")
+    command = [argument for argument in command if argument != "--nocolor"]
     code, written = on_a_terminal([*command[:2], "points", *command[2:]], study.folder)
     text = plain(written)
     assert code == 0, text
