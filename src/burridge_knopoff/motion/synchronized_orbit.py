@@ -56,8 +56,8 @@ def synchronized_orbits(model: Model) -> KnownOrbits:
 
     model : at any a
 
-    Raises OrbitError if its chain is not its own mirror image, or if no orbit is found at any of the SEEDS
-    or at the a of the model.
+    Raises OrbitError if its chain is not its own mirror image, or if no orbit is found at any of the SEEDS or at the
+    a of the model.
     """
     if not model.chain.is_mirror_symmetric:
         raise OrbitError("chain: got a chain that is not its own mirror image, expected one that is")
@@ -69,7 +69,7 @@ def synchronized_orbits(model: Model) -> KnownOrbits:
             except OrbitError:
                 continue
     at = f", nor at a = {', '.join(map(repr, seeds))}" if seeds else ""
-    raise OrbitError(f"{model.place}, v = {model.v!r}: no synchronized periodic orbit{at}")
+    raise OrbitError(f"{model.place}: no synchronized periodic orbit{at}")
 
 
 def _state_at_rest(model: Model) -> ChainState:
