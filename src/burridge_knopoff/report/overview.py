@@ -118,6 +118,8 @@ def chain_text(chain: Chain) -> str:
     parts.append(f"static friction {_format_numbers(chain.threshold)}")
     if chain.mass != 1.0:
         parts.append(f"mass {_format_numbers(chain.mass)}")
+    if chain.weakening != 1.0:
+        parts.append(f"weakening {_format_numbers(chain.weakening)}")
     for words, damping in (("neighbours", chain.damping), ("the driver", chain.pulling_damping)):
         if np.any(damping):
             parts.append(f"dashpots to {words} {_format_numbers(damping)}")
