@@ -79,6 +79,14 @@ def test_basins(capsys, tmp_path, monkeypatch):
     assert picture.stat().st_size > 10_000
 
 
+def test_basins_of_one_block(capsys):
+    one = ["--formula", "1/(1 + u)", "--blocks", "1", "--contact", "symmetric", "--position", "0", "--velocity", "0"]
+    printed = said(capsys, "basins", *one, *OPTIONS, "--pixels", "2", "--first-velocity", "v - 0.5,2")
+    assert "2 x 2 states, U_1(0) -1.5 to 1.5, U_1'(0) -0.4 to 2\n" in printed
+    assert main(["basins", *one, *OPTIONS, "--last-position", "0,1"]) == 2
+    assert capsys.readouterr().err.startswith("bk basins: last_position: got (0.0, 1.0), expected first_velocity in")
+
+
 def test_the_synchronized_orbit(capsys):
     for a, words in ((0.08, "stable: no multiplier outside"), (0.12, "unstable: 1 multiplier outside")):
         orbit = synchronized_orbit(MODEL.at(a))

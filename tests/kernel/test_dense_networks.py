@@ -30,9 +30,8 @@ AT_SWITCHES = [(23, 22), (24, 23), (24, 8), (24, 9), (28, 8), (28, 9), (28, 10)]
 
 def ring(path, blocks, neighbours):
     """Return blocks on a ring with springs 9/r³ to the nearest neighbours; an odd one is the block opposite."""
-    first = np.arange(blocks)
     steps = [*range(1, neighbours // 2 + 1), *[blocks // 2] * (neighbours % 2)]
-    springs = {tuple(sorted(pair)): 9.0 / step**3 for step in steps for pair in zip(first, (first + step) % blocks)}
+    springs = {tuple(sorted((i, (i + step) % blocks))): 9.0 / step**3 for step in steps for i in range(blocks)}
     path.write_text("".join(f"{i + 1} {k + 1} {strength!r}\n" for (i, k), strength in springs.items()))
     chain = Chain(springs=str(path), pulling=1.0)
     assert (np.diff(chain.neighbours.start) == neighbours).all()
