@@ -47,7 +47,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     out.add_argument(
         "--attractors-out",
         metavar="FILE",
-        help="also write the attractors; `bk show --plot` of the map reads attractors.nc in the same folder",
+        help="also write the attractors; `bk show --plot` of the map takes the colours of attractors.nc in its folder",
     )
 
 

@@ -99,8 +99,9 @@ def sweep(
     a : friction parameters, shape (n,), or one number; by default that of a `Model` or a `Law`
     initial : a state in any form that `simulate` takes, or a list of states; in a list, numbers have a name:
         `{"name": …, "position": …, "velocity": …}` or an `InitialState`
-    by_name : other parameters, v, those of the chain such as coupling, or of one block or spring such as `mass[3]`, and
-        the parameters of the law such as sigma, each one number or a sequence; and settings of the run by name
+    by_name : other parameters, v, those of the chain such as coupling, or of one block or spring such as `mass[3]`,
+        which takes precedence, and the parameters of the law such as sigma, each one number or a sequence; and settings
+        of the run by name
     motion : thresholds of the kinds of motion, for v = 0.1; None leaves out `kind` and `period`, which take up to a
         fifth of the time of a run of default length
     settings, chain, blocks, contact : see `simulate`
