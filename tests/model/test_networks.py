@@ -141,6 +141,8 @@ def test_a_grid_with_two_couplings(columns, rows, coupling, damping):
     assert np.allclose(chain.stiffness, total(*coupling) + 0.3 * np.eye(chain.blocks), rtol=0, atol=1e-13)
     assert np.allclose(chain.damping_matrix, total(*np.broadcast_to(damping, 2)), rtol=0, atol=1e-13)
     check_algebra(chain)
+    # The springs to the driver are as many as the neighbours, whatever the strengths.
+    assert (Chain(grid=[columns, rows], coupling=coupling).driving == Chain(grid=[columns, rows]).driving).all()
 
 
 @pytest.mark.parametrize(

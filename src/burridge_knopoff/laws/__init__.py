@@ -26,11 +26,12 @@ LAWS: Mapping[str, type[Law]] = {
 }
 
 
+#: A law as in a config, see `law_of`.
+Description = Mapping[str, Any]
+
+
 def law_of(
-    name: str | Mapping[str, Any],
-    a: float | None = None,
-    description: Mapping[str, Any] | None = None,
-    **parameters: Any,
+    name: str | Description, a: float | None = None, description: Description | None = None, **parameters: Any
 ) -> Law:
     """Return a friction law by name, at a value of a, which a formula without a does not need.
 
