@@ -1,8 +1,8 @@
 """An independent method in double precision: SciPy's DOP853 from event to event, for any chain, law and contact.
 
-Positions are relative to the driver, y_i = U_i − vt, which makes the paper's Eq. 2 y' = U' − v, U'' = F − dθΦ(dU') with
-d = ±1, the direction of slip, and the force F = −Ky − Cy' of springs and dashpots; masses divide U''. Stiffness K,
-damping C, static friction θ and Φ are given: nothing is shared with the package.
+Positions are relative to the driver, y_i = U_i − vt, which makes the paper's Eq. 2 y' = U' − v, U'' = F − dθΦ(wdU')
+with d = ±1, the direction of slip, and the force F = −Ky − Cy' of springs and dashpots; masses divide U''. Stiffness K,
+damping C, static friction θ, weakening w and Φ are given: nothing is shared with the package.
 Event times are good to about 1e-9 over a short horizon; a dip shorter than SPACING is not seen.
 """
 
@@ -18,7 +18,19 @@ ROUNDING = 1e-13
 
 
 def scipy_events(
-    stiffness, threshold, friction, v, position, velocity, slip, end, *, contact="one_sided", mass=1.0, damping=0.0
+    stiffness,
+    threshold,
+    friction,
+    v,
+    position,
+    velocity,
+    slip,
+    end,
+    *,
+    contact="one_sided",
+    mass=1.0,
+    damping=0.0,
+    weakening=1.0,
 ):
     """Return all events up to `end`, (time, block from 1, 0 stop | 1 start), and position and velocity there.
 
@@ -30,14 +42,15 @@ def scipy_events(
     started = np.full(blocks, -1.0)
     signs = (1.0, -1.0) if contact == "symmetric" else (1.0,)
     clock, events = 0.0, []
-    damping = damping * np.ones((blocks, blocks))
+    damping, weakening = damping * np.ones((blocks, blocks)), weakening * np.ones(blocks)
     pull, at_rest = -np.hstack([stiffness, damping]).T, damping @ np.full(blocks, v)
 
     def force_at(y):
         return (y.T @ pull + at_rest).T
 
     def acceleration_at(y):
-        return (slip != 0) * (force_at(y) - slip * threshold * friction(np.maximum(slip * y[blocks:], 0.0))) / mass
+        resistance = slip * threshold * friction(weakening * np.maximum(slip * y[blocks:], 0.0))
+        return (slip != 0) * (force_at(y) - resistance) / mass
 
     def rate(_, y):
         return np.concatenate([y[blocks:] - v, acceleration_at(y)])
@@ -67,7 +80,7 @@ def scipy_events(
                 speed = slip[i] * state[blocks + i]
                 if slip[i] and started[i] != clock and speed <= ROUNDING:
                     # A block that accelerates forward from rest continues.
-                    if speed > -ROUNDING and slip[i] * force[i] > threshold[i] * friction(abs(speed)):
+                    if speed > -ROUNDING and slip[i] * force[i] > threshold[i] * friction(weakening[i] * abs(speed)):
                         continue
                     change(i, 0)
                 elif not slip[i] and any(starts(sign * force[i], sign * growth[i], i) for sign in signs):
@@ -113,5 +126,6 @@ def model_events(model, start, end):
     slip = np.where(start.stuck, 0, np.where(start.velocity < 0.0, -1, 1))
     matter = model.chain.stiffness, model.chain.thresholds, friction_of(model.law), model.v
     kind = {"contact": model.contact, "mass": model.chain.masses, "damping": model.chain.damping_matrix}
+    kind["weakening"] = model.chain.weakenings
     events, position, velocity = scipy_events(*matter, start.position + offset, start.velocity, slip, end, **kind)
     return events, np.concatenate([position - offset, velocity])

@@ -46,7 +46,7 @@ FEW = (
     "a statement on all 0.005 ≤ a ≤ 0.08 needs values of a from 0.005 to 0.0275, from 0.035 to 0.065 and from 0.0725 "
     "to 0.08, where the study has none"
 )
-SPRINGS = "the study's chain has other springs, masses or static friction than the paper's"
+SPRINGS = "the study's chain has other springs, masses or friction than the paper's"
 
 
 @pytest.mark.parametrize(

@@ -39,9 +39,10 @@ def test_one_overdamped_block_slips_once_and_then_creeps(v, drag, groups):
 
 def test_friction_that_grows_with_speed_damps_as_a_dashpot():
     """Φ = 0.9 + u resists like a dashpot of 1: 2.5 times that overdamps, and 0.5 times does not."""
-    for a, events in ((2.5, 0), (0.5, 21)):
-        model = Model(Chain(1, pulling=1.0), FormulaLaw(a, "0.9 + a*u"), 0.1)
-        assert len(record_events(model, resting(model, [-0.9]), 30.0, loading="quasistatic").time) == events
+    for formula, weakening in (("0.9 + a*u", 1.0), ("0.9 - a*u", -1.0)):
+        for a, events in ((2.5, 0), (0.5, 21)):
+            model = Model(Chain(1, pulling=1.0, weakening=weakening), FormulaLaw(a, formula), 0.1)
+            assert len(record_events(model, resting(model, [-0.9]), 30.0, loading="quasistatic").time) == events
 
 
 def dashed(form, generator, drag):

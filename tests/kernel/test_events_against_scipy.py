@@ -1,6 +1,7 @@
 """Stops, starts and the final state of all solvers against SciPy, for all kinds of chains, laws and contacts."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache, partial
 from typing import NamedTuple
 
@@ -30,7 +31,7 @@ ALL_LAWS = {"linearized": 0.1, "nonlinear": 0.3, "carlson_langer": 2.0, "exponen
 class Case(NamedTuple):
     """States of a model that are followed to a time, and a number of events that each passes at least.
 
-    matrices : stiffness and damping, if they are not taken from the chain
+    matrices : stiffness and damping, if they are not taken from the chain; weakening : of each block then
     """
 
     model: Model
@@ -38,6 +39,7 @@ class Case(NamedTuple):
     end: float
     least: int
     matrices: tuple[np.ndarray, np.ndarray] | None = None
+    weakening: float | np.ndarray = 1.0
 
     def expected(self, start: ChainState) -> tuple[list, np.ndarray]:
         """Return the events and the final state by SciPy."""
@@ -45,10 +47,11 @@ class Case(NamedTuple):
             return model_events(self.model, start, self.end)
         model, (stiffness, damping) = self.model, self.matrices
         assert np.allclose(model.chain.stiffness, stiffness, rtol=1e-15)
-        offset = np.linalg.solve(stiffness, np.full(model.blocks, -float(model.law(model.v))))
+        sliding = np.broadcast_to(model.law(self.weakening * np.full(model.blocks, model.v)), model.blocks)
+        offset = np.linalg.solve(stiffness, -sliding)
         slip = np.where(start.stuck, 0, np.where(start.velocity < 0.0, -1, 1))
         matter = stiffness, np.ones(model.blocks), friction_of(model.law), model.v
-        kind = {"contact": model.contact, "damping": damping}
+        kind = {"contact": model.contact, "damping": damping, "weakening": self.weakening}
         moving = start.position + offset, start.velocity, slip
         events, position, velocity = scipy_events(*matter, *moving, self.end, **kind)
         return events, np.concatenate([position - offset, velocity])
@@ -108,6 +111,20 @@ def dashpots(seed):
     return Case(model, [start], 10.0, 0, (stiffness, damping))
 
 
+def weakening(seed):
+    """A chain with or without dashpots whose blocks differ in friction: it falls, grows and is constant with speed."""
+    case, generator = dashpots(seed), np.random.default_rng([seed, 1])
+    model, (stiffness, damping) = case.model, case.matrices
+    # Hyperbolic laws have a pole at some speed where friction grows, which must be above 10.
+    least = {"nonlinear": -0.3, "carlson_langer": -0.04}.get(model.law.name, -1.0)
+    factors = generator.permutation(np.resize([1.0, least, 0.0, 1.5, 0.5 * least, 0.3], model.blocks))
+    options = {"damping": 0.0, "pulling_damping": 0.0} if seed % 2 else {}
+    if seed % 2:
+        damping = np.zeros_like(damping)
+    chain = replace(model.chain, weakening=factors, **options)
+    return Case(replace(model, chain=chain), case.starts, case.end, 0, (stiffness, damping), factors)
+
+
 CASES: dict[str, Callable[[], Case]] = {
     **{
         f"{kind.__name__}-{number}-{law}-{contact}": partial(kind, chain, law, contact)
@@ -124,6 +141,7 @@ CASES: dict[str, Callable[[], Case]] = {
     },
     **{f"many_states-{law}": partial(many_states, law) for law in LAWS},
     **{f"dashpots-{seed}": partial(dashpots, seed) for seed in range(60)},
+    **{f"weakening-{seed}": partial(weakening, seed) for seed in range(60)},
 }
 
 
@@ -177,8 +195,8 @@ SOLVERS = {
 }
 
 
-#: Of the random chains with dashpots, of every form, law and contact, the first ones.
-LONG = {f"dashpots-{seed}" for seed in range(20, 60)}
+#: All random chains, of every form, law and contact, but the first ones.
+LONG = {f"{kind}-{seed}" for kind in ("dashpots", "weakening") for seed in range(20, 60)}
 
 
 @pytest.mark.parametrize("solver", SOLVERS)

@@ -13,6 +13,8 @@ from burridge_knopoff.running.status import Status
 from tests.flows import check_events
 
 LAWS = {"linearized": 0.3, "nonlinear": 3.0, "carlson_langer": 5.0, "exponential": 2.0}
+#: Weakening of blocks of which few strengthen.
+MIXED = {"random": "uniform", "low": -0.01, "high": 1.5, "seed": 1}
 
 
 def at_rest(model, seed, spread=0.3):
@@ -43,7 +45,8 @@ def events(model, start, end, groups):
 @settings(max_examples=100)
 def test_events_are_those_of_the_chain_as_a_whole(blocks, law, contact, ends, coupling, v, dashpots, seed):
     dashpots = dict(zip(("damping", "pulling_damping"), dashpots, strict=True))
-    chain = Chain(blocks, coupling=coupling, pulling=1.0, ends=ends if blocks > 1 else "open", **dashpots)
+    options = {"ends": ends if blocks > 1 else "open", "weakening": MIXED if seed % 2 else 1.0, **dashpots}
+    chain = Chain(blocks, coupling=coupling, pulling=1.0, **options)
     model = Model(chain, law_of(law, LAWS[law]), v, contact)
     start = at_rest(model, seed)
     # Chaos sets in with the first slips that reach far.

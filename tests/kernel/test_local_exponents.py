@@ -11,7 +11,7 @@ from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from tests.catalogue.test_stability import rests, rough
 from tests.conftest import random_examples
-from tests.kernel.test_groups import LAWS, at_rest, events
+from tests.kernel.test_groups import LAWS, MIXED, at_rest, events
 
 #: Undamped, underdamped and overdamped slips; the last creep under quasi-static loading.
 DASHPOTS = [(0.0, 0.0), (0.5, 0.0), (0.0, 0.2), (2.0, 0.1), (8.0, 4.0), (0.0, 12.0)]
@@ -65,6 +65,7 @@ def test_growth_is_that_of_the_chain_as_a_whole(
         ends=ends if blocks > 1 else "open",
         damping=damping,
         pulling_damping=pulling_damping,
+        weakening=MIXED if seed % 2 else 1.0,
     )
     model = Model(chain, law_of(law, LAWS[law]), 10.0**speed, contact)
     start = at_rest(model, seed)

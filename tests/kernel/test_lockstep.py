@@ -32,7 +32,9 @@ def batches(draw):
     for _ in range(draw(st.sampled_from([2, LANES - 1, LANES, LANES + 1, 3 * LANES]))):
         a = float(generator.choice([0.02, 0.08, 0.3]) * generator.uniform(0.8, 1.2))
         damped = {name: float(generator.uniform(0.01, 1.0)) for name in dashpots}
-        chain = Chain(blocks, generator.uniform(0.3, 3.0), generator.uniform(0.5, 2.0), ends=ends, **damped)
+        weakening = generator.choice([-0.02, 0.0, 0.5, 1.0], blocks) if generator.random() < 0.5 else 1.0
+        options = {"ends": ends, "weakening": weakening, **damped}
+        chain = Chain(blocks, generator.uniform(0.3, 3.0), generator.uniform(0.5, 2.0), **options)
         model = Model(chain, law_of(law, a), float(generator.choice([0.01, 0.1, 0.5])), contact)
         position, velocity = generator.uniform(-0.5, 0.4, blocks), generator.uniform(0.0, 0.2, blocks)
         # Blocks that move identically except for rounding.

@@ -1,4 +1,4 @@
-"""Networks of springs and blocks of unequal mass, and their perturbations against finite differences."""
+"""Networks of springs, and blocks of unequal mass and friction, and their perturbations against finite differences."""
 
 from pathlib import Path
 
@@ -22,6 +22,8 @@ CHAINS = [
     Chain(4, ends="ring", damping=(0.1, 0, 0.5, 1), pulling_damping=(0, 0.2, 0, 0.1), mass=(0.5, 1.0, 2.0, 1.0)),
     Chain(springs=NETWORK, pulling=1.0, pulling_damping=0.1),
     Chain(1, pulling_damping=0.4),
+    Chain(5, weakening=(1.0, -0.3, 0.0, 1.5, 0.5)),
+    Chain(grid=(3, 2), pulling=1.0, damping=0.3, weakening=(1.0, -0.3, 0.5, 0.0, 1.0, -0.1)),
 ]
 
 

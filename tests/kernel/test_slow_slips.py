@@ -91,7 +91,7 @@ class ExactMotion:
         chain = model.chain
         self.chain, self.x, self.driver, self.clock = chain, np.array(position, float), 0.0, 0.0
         self.u, self.w, self.slips = np.zeros(model.blocks), np.zeros(model.blocks), np.zeros(model.blocks, bool)
-        self.damping = np.diag(chain.damping_diagonal - chain.thresholds * WEAKENING)
+        self.damping = np.diag(chain.damping_diagonal - chain.thresholds * chain.weakenings * WEAKENING)
         first, index, _, dashpots = chain.neighbours
         for i in range(model.blocks):
             self.damping[i, index[first[i] : first[i + 1]]] -= dashpots[first[i] : first[i + 1]]
@@ -156,8 +156,9 @@ class ExactMotion:
 
 @pytest.mark.parametrize("seed", quick_first(range(6), 2))
 @pytest.mark.parametrize("form", ["row", "ring"])
+@pytest.mark.parametrize("factors", [(1.0,), (1.0, -2.0, 0.5)])
 @GROUPS
-def test_several_blocks_near_critical_damping_change_as_exact_motion_does(seed, form, groups):
+def test_several_blocks_near_critical_damping_change_as_exact_motion_does(seed, form, factors, groups):
     """Both below and above critical damping, with sets that stop in part and creep in part."""
     generator = np.random.default_rng(seed)
     blocks = 3 if form == "row" else 4
@@ -166,9 +167,10 @@ def test_several_blocks_near_critical_damping_change_as_exact_motion_does(seed, 
     ends = {"ends": "ring"} if form == "ring" else {}
     drag = 2.0 * np.sqrt(pulling) * generator.uniform(0.8, 1.1, blocks)
     between = tuple(generator.uniform(0.0, 0.3, springs))
-    damping = tuple(drag + WEAKENING)
-    dashpots = {"damping": between, "pulling_damping": damping}
-    model = Model(Chain(blocks, coupling=tuple(coupling), pulling=tuple(pulling), **dashpots, **ends), LAW, 1.0)
+    weakening = np.resize(factors, blocks)
+    damping = tuple(drag + WEAKENING * weakening)
+    options = {"damping": between, "pulling_damping": damping, "weakening": weakening, **ends}
+    model = Model(Chain(blocks, coupling=tuple(coupling), pulling=tuple(pulling), **options), LAW, 1.0)
     exact = ExactMotion(model, -np.linalg.solve(model.chain.stiffness, generator.uniform(0.7, 0.95, blocks)))
     _, runner, _ = record_catalogue(model, resting(model, exact.x), 0.8, groups, loading="quasistatic")
     exact.advance(0.8)

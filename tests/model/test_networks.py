@@ -208,6 +208,14 @@ def test_unequal_masses_break_the_mirror_symmetry():
     assert Chain(3, mass=(1.0, 1.0, 1.0)).is_equivalent_to(Chain(3))
 
 
+def test_unequal_friction_breaks_the_mirror_symmetry():
+    assert Chain(3, weakening=(1.0, -0.5, 1.0)).is_mirror_symmetric
+    assert not Chain(3, weakening=(1.0, 1.0, 0.5)).is_mirror_symmetric
+    assert not Model(Chain(3, weakening=0.5), law_of("linearized", 0.1)).has_closed_form
+    assert Chain(3, weakening=(1.0, -0.5, 1.0)).different_key(Chain(3)) == "weakening"
+    assert Chain(3, weakening=(1.0, 1.0, 1.0)).is_equivalent_to(Chain(3))
+
+
 def test_random_numbers_depend_on_their_seed():
     chain, longer = Chain(50, threshold=UNIFORM, mass=UNIFORM), Chain(80, threshold=UNIFORM)
     assert (chain.thresholds == Chain(50, threshold=chain.threshold).thresholds).all()

@@ -10,9 +10,10 @@ MODEL = Model(Chain(3, pulling=1.5), law_of("stribeck", 0.3), v=0.2)
 
 
 def test_the_names_are_those_of_the_law_the_driver_and_the_chain():
-    names = "a", "sigma", "eta", "v", "coupling", "damping", "pulling", "threshold", "mass", "pulling_damping"
-    assert MODEL.parameter_names == names
-    assert [MODEL.parameter(name) for name in names] == [0.3, 0.05, 0.2, 0.2, 1.0, 0.0, 1.5, 1.0, 1.0, 0.0]
+    numbers = {"a": 0.3, "sigma": 0.05, "eta": 0.2, "v": 0.2, "coupling": 1.0, "damping": 0.0, "pulling": 1.5}
+    numbers |= {"threshold": 1.0, "mass": 1.0, "pulling_damping": 0.0, "weakening": 1.0}
+    assert MODEL.parameter_names == tuple(numbers)
+    assert {name: MODEL.parameter(name) for name in numbers} == numbers
 
 
 def test_a_model_with_changed_parameters_equals_one_built_from_them():

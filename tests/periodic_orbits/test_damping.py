@@ -122,7 +122,7 @@ def test_a_parameter_grows_from_0(parameter):
 
 def test_derivatives_along_the_motion():
     """Force, acceleration and their rates, with a stuck block among slipping ones."""
-    chain = Chain(4, damping=0.3, pulling_damping=0.1, mass=(1.0, 2.0, 1.0, 1.0))
+    chain = Chain(4, damping=0.3, pulling_damping=0.1, mass=(1.0, 2.0, 1.0, 1.0), weakening=(1.0, 1.0, -0.2, 0.5))
     model = Model(chain, law_of("nonlinear", 0.3), 0.2)
     stuck = np.array([False, True, False, False])
     position, velocity = np.array([0.1, -0.2, 0.05, 0.2]), np.array([0.3, 0.0, 0.2, 0.1])

@@ -48,7 +48,7 @@ def grazing():
     return end_of_synchrony("mass[3]")
 
 
-@pytest.mark.parametrize("parameter", ["mass[3]", "coupling[1]", "threshold[1]", "pulling[3]"])
+@pytest.mark.parametrize("parameter", ["mass[3]", "coupling[1]", "threshold[1]", "pulling[3]", "weakening[3]"])
 def test_a_parameter_of_one_end_block_breaks_the_symmetry(parameter):
     branch = follow(synchronized_orbit(MODEL), (0.999, 1.004), WIDE, parameter=parameter)
     assert all(point.orbit.symmetry == Symmetry.ASYMMETRIC for point in branch)
@@ -58,8 +58,9 @@ def test_a_parameter_of_one_end_block_breaks_the_symmetry(parameter):
     assert end == pytest.approx(orbit.reference.vector(), abs=1e-8)
 
 
-def test_a_parameter_of_the_middle_block_keeps_the_symmetry():
-    branch = follow(synchronized_orbit(MODEL), (0.9, 1.004), WIDE, parameter="mass[2]")
+@pytest.mark.parametrize("parameter", ["mass[2]", "weakening[2]"])
+def test_a_parameter_of_the_middle_block_keeps_the_symmetry(parameter):
+    branch = follow(synchronized_orbit(MODEL), (0.9, 1.004), WIDE, parameter=parameter)
     assert all(point.orbit.symmetry == Symmetry.SYNCHRONIZED for point in branch)
 
 

@@ -63,12 +63,14 @@ def test_the_equilibrium_of_any_chain(chain, law):
         Chain(4, ends="ring", mass=2.0),
         Chain(4, mass=(1.0, 2.0, 2.0, 1.0), threshold=(1.0, 2.0, 2.0, 1.0)),
         Chain(grid=(3, 2), coupling=1.5),
+        Chain(3, weakening=(1.0, -0.2, 0.5), threshold=(1.0, 2.0, 1.5)),
+        Chain(4, weakening=(1.0, 0.0, 0.0, 1.0), damping=0.0),
     ],
 )
-def test_masses_and_networks(chain):
+def test_masses_networks_and_friction(chain):
     model = Model(chain, law_of("nonlinear", 0.4), 0.7)
     assert sliding_position(model) == pytest.approx(model.sliding_offset, rel=1e-12)
-    slope = float(model.law.slope(0.7))
+    slope = -0.4 * chain.weakenings / (1.0 + 0.4 * 0.7 * chain.weakenings) ** 2
     blocks = np.zeros((chain.blocks, chain.blocks)), np.eye(chain.blocks)
     dense = np.block([[*blocks], [-chain.stiffness, np.diag(-chain.thresholds * slope)]])
     dense[chain.blocks :] /= chain.masses[:, None]
@@ -76,6 +78,9 @@ def test_masses_and_networks(chain):
     mine = eigenvalues(model)
     assert np.sort(mine.imag) == pytest.approx(np.sort(theirs.imag), abs=1e-9)
     assert np.sort(mine.real) == pytest.approx(np.sort(theirs.real), abs=1e-9)
+    drift, rate = simulate_sliding(model, sliding_position(model))
+    assert drift < 1e-10
+    assert rate == pytest.approx(theirs.real.max(), abs=1e-9)
 
 
 def test_a_large_chain_has_no_modes_in_the_summary():

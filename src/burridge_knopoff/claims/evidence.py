@@ -78,11 +78,11 @@ class Evidence:
             )
 
     def check_setting(self) -> None:
-        """Raise NotTestableError if the driver velocity, springs, masses or thresholds are not the paper's."""
+        """Raise NotTestableError if the driver velocity, springs, masses or friction are not the paper's."""
         if self.config["v"] != PAPER_V:
             raise NotTestableError(f"the paper's driver has v = {PAPER_V}, that of the study v = {self.config['v']:g}")
         if not Chain(**self.config["chain"]).is_equivalent_to(Chain(self._blocks)):
-            raise NotTestableError("the study's chain has other springs, masses or static friction than the paper's")
+            raise NotTestableError("the study's chain has other springs, masses or friction than the paper's")
 
     def check_laws(self, laws: Iterable[str]) -> None:
         """Raise NotTestableError if the study lacks one of these laws of the paper, or uses its name for another."""
@@ -169,7 +169,7 @@ class Evidence:
             raise NotTestableError(f"a = {a:g} is not in the grid")
         return self.cached(("a", a), lambda: dataset.sel(a=a), dataset)
 
-    def weakening(self, law: str, a: np.ndarray) -> np.ndarray:
+    def negative_damping(self, law: str, a: np.ndarray) -> np.ndarray:
         """Return −F'(v), the rate at which friction falls with velocity at the driver velocity, at values of a."""
         v = self.config["v"]
         key = law, v, a.tobytes()

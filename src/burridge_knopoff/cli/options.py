@@ -90,6 +90,7 @@ _METAVARS = {
     "mass": "M1,M2,...",
     "damping": "C1,C2,...",
     "pulling_damping": "C1,C2,...",
+    "weakening": "W1,W2,...",
     "grid": "NX,NY",
     "springs": "FILE",
     "position": "U1,U2,...",

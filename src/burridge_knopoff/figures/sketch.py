@@ -23,8 +23,9 @@ FROM_STUDY = ("chain",)
 CAPTION = """\
 The chain of the study. Springs couple neighbouring blocks, and others connect blocks to a driver that moves with
 velocity v; the number next to a spring is its stiffness in units of the spring constant k. U_i is the position of block
-i. Dry friction holds a block up to its static friction F, in units of F(0); F is given if it differs between blocks. Of
-a long chain, only the first two blocks and the last are drawn. Springs of a network and dashpots are not drawn.
+i. Dry friction holds a block up to its static friction F, in units of F(0). F is given if it differs between blocks,
+and so is the weakening w, the factor of the slip speed in friction. Of a long chain, only the first two blocks and the
+last are drawn. Springs of a network and dashpots are not drawn.
 """
 
 #: Longer chains are drawn in part.
@@ -44,6 +45,9 @@ def draw(chain: Chain) -> Figure:
     left, right = -1.5, max(place.values()) + 1.7
     figure = Figure(figsize=(min(PAGE, 0.75 * (right - left) + 0.4), 2.4), layout="constrained")
     panel = figure.subplots()
+    differing = {
+        symbol: values for symbol, values in (("F", chain.thresholds), ("w", chain.weakenings)) if np.ptp(values) > 0.0
+    }
     panel.add_patch(Rectangle((left, -0.3), right - left, 0.3, facecolor="none", edgecolor="0.5", hatch="////", lw=0))
     panel.plot([left, right], [0.0, 0.0], color="black")
     panel.add_patch(Rectangle((left, TOP), right - left, 0.18, facecolor="0.85", edgecolor="black", linewidth=0.7))
@@ -58,8 +62,8 @@ def draw(chain: Chain) -> Figure:
             # The driver is ahead.
             _spring(panel, (x + 0.25, SIDE), (x + 0.8, TOP))
             panel.text(x + 0.75, 1.4, f"${chain.driving[block]:g}$")
-        if np.ptp(chain.thresholds) > 0.0:
-            panel.text(x, -0.38, f"$F={chain.thresholds[block]:g}$", ha="center", va="top")
+        of_block = [f"${symbol}={values[block]:g}$" for symbol, values in differing.items()]
+        panel.text(x, -0.38, "\n".join(of_block), ha="center", va="top")
     for block, other in pairwise(blocks):
         start, end = place[block] + SIDE / 2, place[other] - SIDE / 2
         if other != block + 1 or chain.is_network:
@@ -68,8 +72,9 @@ def draw(chain: Chain) -> Figure:
         _spring(panel, (start, SIDE / 2), (end, SIDE / 2))
         panel.text(0.5 * (start + end), 0.62, f"${chain.coupling_to_next[block]:g}$", ha="center")
     lines = _words(chain)
-    lowest = -0.75 - 0.4 * len(lines) if lines or np.ptp(chain.thresholds) > 0.0 else -0.35
-    panel.text(0.5 * (left + right), -0.75, "\n".join(lines), ha="center", va="top")
+    top = -0.35 - 0.4 * max(len(differing), 1)
+    lowest = top - 0.4 * len(lines) if lines or differing else -0.35
+    panel.text(0.5 * (left + right), top, "\n".join(lines), ha="center", va="top")
     panel.set(xlim=(left - 0.05, right + 0.05), ylim=(lowest, TOP + 0.7), aspect="equal")
     panel.set_axis_off()
     return figure

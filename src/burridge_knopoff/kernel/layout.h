@@ -57,7 +57,7 @@ struct Layout : Lanes<COUNT> {
     using typename Lanes<COUNT>::mask;
 
     int columns = 0;
-    Rows diagonal, threshold, sliding_force, mass, inverse_mass, damping_diagonal, damping_load;
+    Rows diagonal, threshold, weakening, sliding_force, mass, inverse_mass, damping_diagonal, damping_load;
     // Contribution of stuck neighbours outside the group to ds_i/dτ, see Blocks::outside.
     Rows drift;
     std::vector<mask> present;
@@ -80,7 +80,8 @@ struct Layout : Lanes<COUNT> {
 
     void widen(int count) {
         columns = count;
-        for (Rows *row : {&diagonal, &threshold, &sliding_force, &mass, &inverse_mass, &drift}) row->reserve(count);
+        for (Rows *row : {&diagonal, &threshold, &weakening, &sliding_force, &mass, &inverse_mass, &drift})
+            row->reserve(count);
         if (damped)
             for (Rows *row : {&damping_diagonal, &damping_load}) row->reserve(count);
         if (int(present.size()) < count) present.resize(count);
@@ -146,7 +147,7 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
         for (int c = 0; c < columns; c++) {
             diagonal[c] = driving[c] = sliding_force[c] = drift[c] = vec{};
             if (damped) damping_diagonal[c] = damping_load[c] = vec{};
-            threshold[c] = mass[c] = inverse_mass[c] = splat(1.0);
+            threshold[c] = weakening[c] = mass[c] = inverse_mass[c] = splat(1.0);
             present[c] = from_bits(n >= (c + 1) * LANES ? -1 : (1 << (n - c * LANES)) - 1);
         }
         degree = row ? 0 : chain.degree;
@@ -158,6 +159,7 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
             diagonal.lane(k) = chain.diagonal[i];
             driving.lane(k) = chain.driving[i];
             threshold.lane(k) = chain.threshold[i];
+            weakening.lane(k) = chain.weakening[i];
             sliding_force.lane(k) = chain.sliding_force[i];
             mass.lane(k) = chain.mass[i];
             inverse_mass.lane(k) = 1.0 / chain.mass[i];
@@ -302,6 +304,7 @@ struct Trajectories : Layout<WIDEST, Lanes<WIDEST>::vec> {
             const size_t k = size_t(i) * LANES + lane;
             diagonal.lane(k) = springs.diagonal[i];
             threshold.lane(k) = springs.threshold[i];
+            weakening.lane(k) = springs.weakening[i];
             sliding_force.lane(k) = springs.sliding_force[i];
             mass.lane(k) = springs.mass[i];
             inverse_mass.lane(k) = 1.0 / springs.mass[i];

@@ -99,9 +99,9 @@ void Run::restore_friction(const Group &group, double from) {
     constexpr int ORDER = Blocks::ORDER;
     const int columns = group.layout.columns;
     for (int c = 0; c < columns; c++) {
+        const vec along = group.state.slip[c] * group.state.layout.weakening[c];
         vec speed[ORDER + 1];
-        for (int k = 0; k <= ORDER; k++)
-            speed[k] = group.state.slip[c] * group.series.velocity[size_t(k) * columns + c];
+        for (int k = 0; k <= ORDER; k++) speed[k] = along * group.series.velocity[size_t(k) * columns + c];
         // Repeated Horner scheme.
         for (int n = 0; n < ORDER && from > 0.0; n++)
             for (int k = ORDER - 1; k >= n; k--) speed[k] += from * speed[k + 1];

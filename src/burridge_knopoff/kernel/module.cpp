@@ -56,8 +56,8 @@ nb::ndarray<nb::numpy, T> taken(std::vector<T> &values) {
     return nb::ndarray<nb::numpy, T>(own->data(), 1, shape, owner);
 }
 
-Model *new_model(Numbers diagonal, Numbers driving, Numbers threshold, Numbers sliding_force, Numbers mass,
-                 Array1<int64_t> start, Array1<int64_t> neighbour, Numbers strength, Numbers damping,
+Model *new_model(Numbers diagonal, Numbers driving, Numbers threshold, Numbers weakening, Numbers sliding_force,
+                 Numbers mass, Array1<int64_t> start, Array1<int64_t> neighbour, Numbers strength, Numbers damping,
                  Numbers damping_diagonal, Numbers damping_load, Array2<int64_t> operations, Table constants, int value,
                  int slope, bool linear, double rate, double steepest, double v, bool symmetric, double creep_speed,
                  double rest_speed) {
@@ -67,6 +67,7 @@ Model *new_model(Numbers diagonal, Numbers driving, Numbers threshold, Numbers s
     springs.diagonal = copied(diagonal);
     springs.driving = copied(driving);
     springs.threshold = copied(threshold);
+    springs.weakening = copied(weakening);
     springs.sliding_force = copied(sliding_force);
     springs.mass = copied(mass);
     springs.start = copied(start);
@@ -200,10 +201,10 @@ NB_MODULE(_core, m) {
 
     nb::class_<Model>(m, "KernelModel",
                       "A chain or network of blocks with its friction law and driver, as the kernel reads it.")
-        .def(nb::new_(&new_model), "diagonal"_a, "driving"_a, "threshold"_a, "sliding_force"_a, "mass"_a, "start"_a,
-             "neighbour"_a, "strength"_a, "damping"_a, "damping_diagonal"_a, "damping_load"_a, "operations"_a,
-             "constants"_a, "value"_a, "slope"_a, "linear"_a, "rate"_a, "steepest"_a, "v"_a, "symmetric"_a,
-             "creep_speed"_a = 0.0, "rest_speed"_a = 0.0)
+        .def(nb::new_(&new_model), "diagonal"_a, "driving"_a, "threshold"_a, "weakening"_a, "sliding_force"_a, "mass"_a,
+             "start"_a, "neighbour"_a, "strength"_a, "damping"_a, "damping_diagonal"_a, "damping_load"_a,
+             "operations"_a, "constants"_a, "value"_a, "slope"_a, "linear"_a, "rate"_a, "steepest"_a, "v"_a,
+             "symmetric"_a, "creep_speed"_a = 0.0, "rest_speed"_a = 0.0)
         .def_prop_ro(
             "fastest", [](const Model &model) { return model.springs.fastest; },
             "Bound on the angular frequencies of slipping blocks.")

@@ -162,10 +162,11 @@ struct Series {
 
   private:
     enum Kind { LINEAR_LAW, HYPERBOLIC_LAW, ANY_LAW };
-    Rows signed_threshold, weakening, pressed, force;
-    // Quantities of a column for the recursion, and its last row.
+    Rows signed_threshold, friction_slope, pressed, force;
+    // Quantities of a column for the recursion, and its last row; along : the derivative of w_i |U_i'|, the argument of
+    // the law, by U_i'
     struct Column {
-        vec slip, stuck, moving, weakening, pressed, line_slope, inverse_slope, start, force, speed;
+        vec slip, along, stuck, moving, friction_slope, pressed, line_slope, inverse_slope, start, force, speed;
         vec *line, *inverse;
         bool rests;  // whether all blocks of the column stick
     };
@@ -179,7 +180,8 @@ struct Series {
         position.reserve(rows * columns);
         velocity.reserve(rows * columns);
         gap.reserve(rows * width);
-        for (Rows *row : {&slipping, &stuck, &signed_threshold, &weakening, &pressed, &force}) row->reserve(columns);
+        for (Rows *row : {&slipping, &stuck, &signed_threshold, &friction_slope, &pressed, &force})
+            row->reserve(columns);
         law.widen(columns);
         for (int c = 0; c < columns; c++) {
             x(0)[c] = state.position[c];
@@ -187,7 +189,8 @@ struct Series {
             x(1)[c] = state.velocity[c] - layout.v;
         }
         for (int c = 0; c < columns; c++) {
-            const vec slip = state.slip[c], own = slip * u(0)[c], s = state.force(c);
+            const vec slip = state.slip[c], along = slip * layout.weakening[c], own = along * u(0)[c],
+                      s = state.force(c);
             slipping[c] = slip * slip;
             stuck[c] = 1.0 - slipping[c];
             // With the sign of the slip direction, as friction; divided by the mass, as accelerations.
@@ -201,7 +204,7 @@ struct Series {
                 friction = law.friction(c, 0);
                 slope = law.slopes(c)[law.law.value];
             }
-            weakening[c] = signed_threshold[c] * (slope * slip);
+            friction_slope[c] = signed_threshold[c] * (slope * along);
             if (law.law.hyperbolic) {
                 const Number scale = law.law.value == 3 ? law.tape[2].alpha : Number{} + 1.0;
                 pressed[c] = -(signed_threshold[c] * (scale * law.row(2, c)[0]));
@@ -235,17 +238,18 @@ struct Series {
         for (int c = 0; c < count; c++) {
             Column &at = own[c];
             at.slip = state.slip[c];
+            at.along = at.slip * layout.weakening[c];
             at.stuck = stuck[c];
             at.moving = slipping[c] * layout.inverse_mass[c];
             at.rests = L::ONE_CLOCK && !COLUMNS && KIND == HYPERBOLIC_LAW && !any(at.slip != vec{});
-            at.weakening = weakening[c];
+            at.friction_slope = friction_slope[c];
             at.force = force[c];
             at.speed = u(1)[c];
             if constexpr (KIND == HYPERBOLIC_LAW) {
                 at.line = law.row(1, c);
                 at.inverse = law.row(2, c);
-                at.line_slope = law.slopes(c)[1] * at.slip;
-                at.inverse_slope = law.slopes(c)[2] * at.slip;
+                at.line_slope = law.slopes(c)[1] * at.along;
+                at.inverse_slope = law.slopes(c)[2] * at.along;
                 at.start = at.inverse[0];
             }
             at.pressed = KIND == HYPERBOLIC_LAW ? pressed[c] : signed_threshold[c];
@@ -271,9 +275,9 @@ struct Series {
                     at.inverse[n] = at.inverse_slope * speed - at.start * total;
                 } else if constexpr (KIND == ANY_LAW) {
                     next -= (at.pressed * factor) * law.prepare(c, n);
-                    law.settle(c, n, at.slip * speed);
+                    law.settle(c, n, at.along * speed);
                 }
-                at.speed = velocity[c] = next - (at.weakening * factor) * speed;
+                at.speed = velocity[c] = next - (at.friction_slope * factor) * speed;
                 position[c] = speed * factor;
             }
             for (int c = 0; c < count; c++) {

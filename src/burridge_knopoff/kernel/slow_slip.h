@@ -1,5 +1,5 @@
 // A connected set of blocks that slip so slowly that friction is linear in their speeds, while the driver and their
-// neighbours rest. With C the dashpots and the slope of friction at rest, θ_i Φ'(0) on the diagonal, the velocities
+// neighbours rest. With C the dashpots and the slope of friction at rest, θ_i w_i Φ'(0) on the diagonal, the velocities
 // obey
 //
 //     M u'' + C u' + K u = 0.
@@ -70,7 +70,9 @@ struct SlowSlip {
     const int size;
     std::vector<std::vector<double>> row;  // Taylor coefficients of the velocities
 
-    double damping(int i) const { return springs.damping_diagonal[i] - springs.threshold[i] * law.rate; }
+    double damping(int i) const {
+        return springs.damping_diagonal[i] - springs.threshold[i] * (springs.weakening[i] * law.rate);
+    }
 
     // (C y)_m and (K x)_m.
     double damped(const std::vector<double> &y, int m) const {

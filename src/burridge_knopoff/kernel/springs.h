@@ -4,14 +4,15 @@
 // In co-moving coordinates x_i = U_i − vτ − e_i, with e the positions of uniform sliding, the spring force on block i
 // is
 //
-//     s_i = f_i − (K x)_i,    f_i = θ_i Φ(v),
+//     s_i = f_i − (K x)_i,    f_i = θ_i Φ(w_i v),
 //
 // with K_ii the sum of all springs at block i and, off the diagonal, minus the springs to its neighbours. Dashpots
 // in parallel with the springs add
 //
 //     Σ_j c_ij (U_j' − U_i') + c_i (v − U_i') = c_i v − (C U')_i.
 //
-// The block has mass m_i, sticks while the force on it is below its threshold θ_i, and slips against friction θ_i Φ.
+// The block has mass m_i, sticks while the force on it is below its threshold θ_i, and slips against friction
+// θ_i Φ(w_i U_i'), which grows with speed where the factor w_i is negative.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +31,7 @@ struct Springs {
     static constexpr int FEW_NEIGHBOURS = 8;
     static constexpr double GROUPED = 3.0;
     int blocks;
-    std::vector<double> diagonal, driving, threshold, sliding_force, mass;
+    std::vector<double> diagonal, driving, threshold, weakening, sliding_force, mass;
     std::vector<int64_t> start;
     std::vector<int> neighbour;
     std::vector<double> strength;
@@ -47,7 +48,7 @@ struct Springs {
     // The chain's own unit of time: 1 if the chain is as slow as the paper's, shorter if it is faster. It is a power of
     // 2, so that a rescaled chain gives the same motion to the bit.
     double unit;
-    // Largest threshold per mass.
+    // Largest θ_i |w_i| / m_i, the factor of the law's slope in the rate at which friction changes velocities.
     double firmest;
     // Largest number of neighbours.
     int degree;
@@ -92,7 +93,7 @@ struct Springs {
         unit = std::ldexp(1.0, 1 - std::max(1, std::ilogb(fastest)));
         firmest = damping_rate = 0.0;
         for (int i = 0; i < blocks; i++) {
-            firmest = std::max(firmest, threshold[i] / mass[i]);
+            firmest = std::max(firmest, threshold[i] * std::fabs(weakening[i]) / mass[i]);
             double total = damping_diagonal[i];
             for (int64_t k = start[i]; k < start[i + 1]; k++) total += damping[k];
             damping_rate = std::max(damping_rate, total / mass[i]);

@@ -1,8 +1,8 @@
 // The state of a chain during integration, and the stick-slip rules that change it.
 //
-// Coordinates are co-moving: position is x_i = U_i − vτ − e_i with K e = −θ Φ(v), velocity is U_i' itself, so that a
-// stuck block has velocity exactly 0. Nothing in the system depends on τ. A block slips against friction θ_i Φ, and
-// starts where the force of its springs and dashpots passes θ_i.
+// Coordinates are co-moving: position is x_i = U_i − vτ − e_i with K e = −θ Φ(w v), velocity is U_i' itself, so that a
+// stuck block has velocity exactly 0. Nothing in the system depends on τ. A block slips against friction θ_i Φ(w_i
+// |U_i'|), and starts where the force of its springs and dashpots passes θ_i.
 #pragma once
 
 #include "layout.h"
@@ -82,11 +82,11 @@ struct State {
         }
     }
 
-    // Friction at speeds |U_i'|, in some lanes: lane by lane, since few are needed.
-    BK_INLINE vec friction(vec speed, mask where) const {
-        if (layout.linear) return layout.at_rest - layout.rate * speed;
+    // Friction at w_i |U_i'|, in some lanes: lane by lane, since few are needed.
+    BK_INLINE vec friction(vec argument, mask where) const {
+        if (layout.linear) return layout.at_rest - layout.rate * argument;
         const int which = bits(where);
-        return each(speed, [&](double u, int lane) { return which >> lane & 1 ? layout.law(lane).at(u) : 0.0; });
+        return each(argument, [&](double u, int lane) { return which >> lane & 1 ? layout.law(lane).at(u) : 0.0; });
     }
 
     // U_i'' of a block that starts at its threshold: exactly 0 unless friction drops at the start.
@@ -96,7 +96,7 @@ struct State {
 
     // U_i'' of slipping blocks, in some lanes.
     BK_INLINE vec slip_acceleration(int c, vec force, mask where) const {
-        const vec own = slip[c] * velocity[c];
+        const vec own = (slip[c] * layout.weakening[c]) * velocity[c];
         const mask young = age[c] < layout.young, touches = touching[c] > 0.0;
         const vec resistance = slip[c] * (layout.threshold[c] * friction(own, where & ~young & ~touches));
         const vec made = select(young, acceleration[c], (force - resistance) * layout.inverse_mass[c]);

@@ -97,7 +97,7 @@ class Tangent {
         }
     }
 
-    // Expand −θ dΦ/dU' / m along a piece of the motion, and determine the number of parts into which it is divided.
+    // Expand −θ w Φ' / m along a piece of the motion, and determine the number of parts into which it is divided.
     // Coefficient k is multiplied by t^(k + 1), with t the length of a part, and is 0 where a block sticks.
     //
     // where : clocks whose perturbations are propagated
@@ -128,7 +128,8 @@ class Tangent {
         for (int c = 0; c < columns; c++) {
             moving[c] = series.slipping[c];
             pull_scale[c] = part * (moving[c] * layout.inverse_mass[c]);
-            if (layout.linear) rates[size_t(c) * LENGTH] = pull_scale[c] * (layout.threshold[c] * layout.rate);
+            if (layout.linear)
+                rates[size_t(c) * LENGTH] = pull_scale[c] * (layout.threshold[c] * (layout.weakening[c] * layout.rate));
         }
         for (int first = 0; !layout.linear;) {
             const int terms = *std::max_element(rate_terms, rate_terms + CLOCKS);
@@ -225,7 +226,8 @@ class Tangent {
     void expand_rates(const State<L> &state, Series<L> &series, int c, int first, int fewest, int terms) {
         const L &layout = state.layout;
         const vec *slope = series.law.row(series.law.law.slope, c);
-        vec *rate = rates.at(size_t(c) * LENGTH), factor = -(layout.threshold[c] * pull_scale[c]);
+        vec *rate = rates.at(size_t(c) * LENGTH),
+            factor = -((layout.threshold[c] * layout.weakening[c]) * pull_scale[c]);
         series.law.complete_slope(c, first, terms);
         for (int n = 0; n < fewest; n++) {
             rate[n] = factor * slope[n];

@@ -139,7 +139,8 @@ class TimeStepping {
             double force = model.springs.sliding_force[i] + model.springs.pull(position, i);
             if (model.springs.damped) force += model.springs.damping_load[i] + model.springs.drag(velocities, i);
             acceleration[stage][i] =
-                (force - direction * (model.springs.threshold[i] * model.law.at(direction * velocity))) /
+                (force - direction * (model.springs.threshold[i] *
+                                      model.law.at((direction * model.springs.weakening[i]) * velocity))) /
                 model.springs.mass[i];
         }
     }

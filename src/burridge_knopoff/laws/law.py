@@ -29,7 +29,6 @@ ROUNDING = 1e-12
 # Number of speeds at which the least friction is first sampled.
 SAMPLES = 256
 _FRACTIONS = np.linspace(0.0, 1.0, SAMPLES + 1)
-_SPEEDS = np.linspace(0.0, MAX_SPEED, 4 * SAMPLES + 1)
 
 
 class Law(Unchanging):
@@ -156,12 +155,12 @@ class Law(Unchanging):
         return compile_formula(self.formula, {**({"a": self.a} if self.has_a else {}), **self.parameters})
 
     def __call__(self, speed: ArrayLike) -> np.ndarray:
-        """Return Φ at speeds U' ≥ 0, elementwise."""
+        """Return Φ at speeds U', elementwise; they are below 0 only for blocks with negative weakening."""
         speed = real_array(speed, "speed")
         return _of_shape(self.tape.run(speed)[0], speed.shape)
 
     def slope(self, speed: ArrayLike) -> np.ndarray:
-        """Return dΦ/dU' at speeds U' ≥ 0, elementwise; negative where friction weakens."""
+        """Return dΦ/dU' at such speeds, elementwise; negative where friction weakens."""
         speed = real_array(speed, "speed")
         return _of_shape(self.tape.run(speed)[1], speed.shape)
 
@@ -170,10 +169,9 @@ class Law(Unchanging):
         """Whether Φ is linear in the speed, so that the motion between events has a closed form."""
         return self.tape.is_linear
 
-    @cached_property
-    def steepest_slope(self) -> float:
-        """The largest modulus of the slope up to MAX_SPEED."""
-        return float(np.abs(self.slope(_SPEEDS)).max())
+    def steepest_slope(self, low: float, high: float) -> float:
+        """Return the largest modulus of the slope at speeds from `low` to `high`."""
+        return float(np.abs(self.slope(np.linspace(low, high, 4 * SAMPLES + 1))).max())
 
     @cached_property
     def initial_slope(self) -> float:

@@ -46,9 +46,16 @@ _BLOCK_VALUES = Either((STRENGTH, Several(STRENGTH), RandomNumbers(STRENGTH)))
 # Other blocks hold a chain in which some blocks are pulled weakly, or not at all.
 _PULLING = Number(DAMPING.least, STRENGTH.most, or_zero=True)
 _DAMPING = Either((DAMPING, Several(DAMPING)))
+_WEAKENING = Number(-STRENGTH.most, STRENGTH.most)
 #: Parameters of each spring between neighbours, and of each block, with their ranges.
 SPRING_PARAMETERS = {"coupling": STRENGTH, "damping": DAMPING}
-BLOCK_PARAMETERS = {"pulling": _PULLING, "threshold": STRENGTH, "mass": STRENGTH, "pulling_damping": DAMPING}
+BLOCK_PARAMETERS = {
+    "pulling": _PULLING,
+    "threshold": STRENGTH,
+    "mass": STRENGTH,
+    "pulling_damping": DAMPING,
+    "weakening": _WEAKENING,
+}
 _SIDE = Whole(1, MAXIMUM_BLOCKS)
 
 
@@ -62,8 +69,9 @@ class Chain(Unchanging):
     row iy, both counted from 0; `coupling` may differ along rows and columns (anisotropic sheets). A file of springs
     has one line for each spring, `block block strength` or `block block strength damping`, with blocks numbered from 1.
     Springs by distance, `{"distance": "9/r**3", "cut_off": 5}`, join all blocks of a row, a ring (r is the arc) or a
-    grid. A block of mass m obeys m U'' = F − threshold · Φ(U') while it slips, and sticks while F is at most its
-    threshold.
+    grid. A block of mass m and weakening w obeys m U'' = F − threshold · Φ(w U') while it slips, and sticks while F is
+    at most its threshold. The factor w of the speed is a factor of a in every law whose formula has a only in the
+    product a*u. Friction of a block grows with speed if w is negative and Φ falls, and is Coulomb friction if w is 0.
 
     The force on block i is F_i = s_i + d_i. The spring force is s_i = D_i vτ − (K U)_i, where K is the graph Laplacian
     of the springs plus diag(D), so that K·1 = D. Dashpots (Kelvin-Voigt damping) add
@@ -130,6 +138,12 @@ class Chain(Unchanging):
     pulling_damping: Annotated[
         float | Sequence[float], _DAMPING, "dashpots to the driver: one number for all blocks, or one per block"
     ] = 0.0
+    weakening: Annotated[
+        Numbers,
+        Either((_WEAKENING, Several(_WEAKENING), RandomNumbers(_WEAKENING))),
+        "factor of the slip speed in the friction law, and thus of a where the formula has a only as a*u: one number "
+        "for all blocks, one per block, or random; negative: friction that falls with speed grows, 0: Coulomb friction",
+    ] = 1.0
 
     def __post_init__(self) -> None:
         is_new = self.springs is not None and not (isinstance(self.springs, str) and has_digest(self.springs))
@@ -206,7 +220,7 @@ class Chain(Unchanging):
             )
 
     def is_equivalent_to(self, other: Chain) -> bool:
-        """Return whether another chain has the same springs, dashpots, masses and static friction, in whatever form.
+        """Return whether another chain has the same springs, dashpots, masses and friction, in whatever form.
 
         A network is never equivalent to a row, because a row has a mirror image.
         """
@@ -260,6 +274,16 @@ class Chain(Unchanging):
     def masses(self) -> np.ndarray:
         """Mass of each block, shape (blocks,)."""
         return read_only_copy(block_values(self.mass, self.blocks, "mass"))
+
+    @cached_property
+    def weakenings(self) -> np.ndarray:
+        """Factor of the slip speed in the friction law of each block, shape (blocks,)."""
+        return read_only_copy(block_values(self.weakening, self.blocks, "weakening"))
+
+    @cached_property
+    def weakening_range(self) -> tuple[float, float]:
+        """The least and the largest of 0 and all weakenings."""
+        return min(0.0, float(self.weakenings.min())), max(0.0, float(self.weakenings.max()))
 
     @cached_property
     def coupling_to_previous(self) -> np.ndarray:
@@ -358,14 +382,14 @@ class Chain(Unchanging):
         """
         if self.blocks == 1 or self.is_network:
             return False
-        of_blocks = (self.driving, self.thresholds, self.masses, self.driver_damping)
+        of_blocks = (self.driving, self.thresholds, self.masses, self.driver_damping, self.weakenings)
         of_springs = (self.coupling_to_previous, self._shift_to_next(self.damping))
         pairs = [(values, values) for values in of_blocks] + [(values, np.roll(values, -1)) for values in of_springs]
         return all(bool((one == other[::-1]).all()) for one, other in pairs)
 
     @property
     def is_uniform(self) -> bool:
-        """Whether this is an undamped row with open ends, masses of 1, and equal coupling, pulling and thresholds.
+        """Whether this is an undamped row with open ends, masses and weakening of 1, and equal springs and thresholds.
 
         The solver `map` requires such a chain.
         """
@@ -376,6 +400,7 @@ class Chain(Unchanging):
             and (isinstance(self.pulling, float) or self.pulling == NEIGHBOURS)
             and isinstance(self.threshold, float)
             and self.mass == 1.0
+            and self.weakening == 1.0
             and not self.is_damped
         )
 
@@ -399,10 +424,12 @@ class Chain(Unchanging):
         """The a at which friction changes a slip as much as a = 1 does in the paper's chain, for which it is 1.
 
         Springs that are stiffer by a factor make all motion faster by its square root; a mode grows at a rate
-        proportional to a times the threshold.
+        proportional to a times the threshold and the weakening.
         """
         pulled = self.driving > 0.0
-        return math.sqrt(float((self.driving * self.masses)[pulled].min())) / float(self.thresholds.max())
+        # Without weakening a has no effect, and any unit will do.
+        effect = float((self.thresholds * np.abs(self.weakenings)).max()) or float(self.thresholds.max())
+        return math.sqrt(float((self.driving * self.masses)[pulled].min())) / effect
 
     @property
     def damping_limit(self) -> float:
@@ -433,19 +460,26 @@ class Chain(Unchanging):
             return np.zeros(velocity.shape)
         return self.driver_damping * v + self._dashpots.negative_product(velocity)
 
-    def sliding_offset(self, friction: float) -> np.ndarray:
+    def sliding_offset(self, friction: float | np.ndarray) -> np.ndarray:
         """Return e with K e = −friction · threshold, shape (blocks,).
 
-        Uniform sliding is U_i = vτ + e_i if `friction` is Φ(v).
+        friction : Φ(w_i v) of each block, or one number for all; then uniform sliding is U_i = vτ + e_i
         """
-        return -friction * self._displacement
+        friction = np.broadcast_to(friction, self.blocks)
+        if (friction == friction[0]).all():
+            return -friction * self._displacement
+        return -self._displacement_by(friction * self.thresholds)
 
     @cached_property
     def _displacement(self) -> np.ndarray:
         """x with K x = threshold, shape (blocks,)."""
+        return self._displacement_by(self.thresholds)
+
+    def _displacement_by(self, force: np.ndarray) -> np.ndarray:
+        """Return x with K x = force, shape (blocks,); the force is mirror-symmetric if the chain is."""
         if self.is_network or self.blocks > ELIMINATION_LIMIT:
-            return read_only_copy(nearest_solution(self.sparse_stiffness, self.thresholds))
+            return read_only_copy(nearest_solution(self.sparse_stiffness, force))
         solve = solve_ring if self.ends == "ring" else solve_tridiagonal
-        x = solve(self.diagonal, self.coupling_to_next, self.thresholds.copy())
+        x = solve(self.diagonal, self.coupling_to_next, force.copy())
         # The solution is made mirror-symmetric to the bit if the chain is.
         return read_only_copy(0.5 * (x + x[::-1]) if self.is_mirror_symmetric else x)

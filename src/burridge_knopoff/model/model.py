@@ -81,6 +81,13 @@ class Model(Unchanging):
             raise ValueError(
                 f"v: got {self.v!r}, expected a velocity up to ten times which the law {self.law.name} is analytic"
             )
+        fastest = max(fastest, MAX_SPEED)
+        slowest_argument, fastest_argument = (factor * fastest for factor in self.chain.weakening_range)
+        if (slowest_argument < 0.0 or fastest_argument > fastest) and not self.law.tape.is_analytic(
+            slowest_argument, fastest_argument
+        ):
+            expected = f"factors of all speeds up to {fastest:g} with which the law {self.law.name} is analytic"
+            raise refusal("chain.weakening", self.chain.weakening, expected)
 
     @property
     def blocks(self) -> int:
@@ -188,10 +195,28 @@ class Model(Unchanging):
         units = self.chain.own_units
         return self.scale / units.velocity * units.state(self.blocks)
 
+    def friction(self, speed: np.ndarray) -> np.ndarray:
+        """Return Φ(w_i u_i) of blocks that slip at speeds u_i, relative to their thresholds, shape (…, blocks)."""
+        return self.law(self.chain.weakenings * speed)
+
+    def friction_slope(self, speed: np.ndarray) -> np.ndarray:
+        """Return the derivative of `friction` with respect to the speed of each block, shape (…, blocks)."""
+        return self.chain.weakenings * self.law.slope(self.chain.weakenings * speed)
+
+    def least_friction(self, fastest: float) -> float:
+        """Return the least Φ(w_i u) of all blocks at speeds u from 0 to `fastest`."""
+        return min(self.law.least_friction(factor * fastest) for factor in set(self.chain.weakening_range))
+
     @cached_property
-    def sliding_friction(self) -> float:
-        """The friction Φ(v) of uniform sliding."""
-        return float(self.law(self.v))
+    def sliding_friction(self) -> np.ndarray:
+        """The friction Φ(w_i v) of uniform sliding, shape (blocks,)."""
+        return read_only_copy(self._friction_at(self.v))
+
+    def _friction_at(self, v: float) -> np.ndarray:
+        # Evaluated once if the blocks are equal: rounding of powers in arrays differs from that of single numbers.
+        if isinstance(self.chain.weakening, float):
+            return np.full(self.blocks, float(self.law(self.chain.weakening * v)))
+        return self.friction(np.full(self.blocks, v))
 
     @cached_property
     def sliding_offset(self) -> np.ndarray:
@@ -235,7 +260,7 @@ class Model(Unchanging):
         u, w = initial.coordinates(self.blocks)
         # Even with a factor of 1 the sum would round the numbers of the paper.
         if isinstance(initial, PaperState) and self.v != PAPER_V:
-            of_paper = self.chain.sliding_offset(float(self.law(PAPER_V)))
+            of_paper = self.chain.sliding_offset(self._friction_at(PAPER_V))
             u, w = self.sliding_offset + self.scale * (u - of_paper), self.scale * w
         self.check_directions(w, "velocity")
         return u, w

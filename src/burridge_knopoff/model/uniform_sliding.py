@@ -20,13 +20,17 @@ def sliding_state(model: Model) -> ChainState:
 def jacobian(model: Model) -> np.ndarray:
     """Return the Jacobian of the flow at uniform sliding, over positions and velocities, shape (2 blocks, 2 blocks)."""
     chain, blocks, masses = model.chain, model.blocks, model.chain.masses[:, None]
-    damping = chain.damping_matrix + np.diag(chain.thresholds * float(model.law.slope(model.v)))
+    damping = chain.damping_matrix + np.diag(chain.thresholds * _sliding_slope(model))
     return np.block([[np.zeros((blocks, blocks)), np.eye(blocks)], [-chain.stiffness / masses, -damping / masses]])
 
 
-def weakening(model: Model) -> np.ndarray:
-    """Return g = −threshold·dΦ/dU'/m of each block at the velocity of the driver, shape (blocks,)."""
-    return -model.chain.thresholds * float(model.law.slope(model.v)) / model.chain.masses
+def negative_damping(model: Model) -> np.ndarray:
+    """Return g = −threshold·dΦ(w U')/dU'/m of each block at the velocity of the driver, shape (blocks,)."""
+    return -model.chain.thresholds * _sliding_slope(model) / model.chain.masses
+
+
+def _sliding_slope(model: Model) -> np.ndarray:
+    return model.friction_slope(np.full(model.blocks, model.v))
 
 
 def eigenvalues(model: Model) -> np.ndarray:
@@ -35,7 +39,7 @@ def eigenvalues(model: Model) -> np.ndarray:
     They are ordered from the slowest oscillation to the fastest, with the positive imaginary part of a pair first;
     non-oscillating ones precede these in order of decreasing growth rate.
     """
-    stiffness, rates, root = model.chain.stiffness, weakening(model), np.sqrt(model.chain.masses)
+    stiffness, rates, root = model.chain.stiffness, negative_damping(model), np.sqrt(model.chain.masses)
     if model.chain.is_damped or (rates != rates[0]).any():
         exact = np.linalg.eigvals(jacobian(model))
         spectrum = [complex(round_digits(value.real), round_digits(value.imag)) for value in exact]

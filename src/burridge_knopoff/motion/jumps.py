@@ -26,7 +26,7 @@ def event_jumps(
     chain = model.chain
     event, index = np.arange(len(block)), block - 1
     force = chain.force(position) + chain.damping_force(velocity, model.v)
-    friction = chain.thresholds * model.law(np.abs(velocity))
+    friction = chain.thresholds * model.friction(np.abs(velocity))
     acceleration = np.where(velocity == 0.0, 0.0, (force - np.sign(velocity) * friction) / chain.masses)
     growth = (chain.force(velocity - model.v) + chain.damping_force(acceleration, 0.0)) / chain.masses
     # A block slips in one direction from its start, where the force has this direction, to its stop.

@@ -69,9 +69,9 @@ def mean_distance(model: Model, start: ChainState, period: float) -> float:
 @singledispatch
 def rate(model: Model, at: ChainState) -> np.ndarray:
     """Return the time derivative of positions and velocities, shape (2 blocks,)."""
-    friction = np.where(at.velocity < 0.0, -1.0, 1.0) * model.law(np.abs(at.velocity))
-    weakening = model.chain.thresholds * (model.sliding_friction - friction)
-    force = weakening - _products(model.chain.stiffness, at.position)
+    friction = np.where(at.velocity < 0.0, -1.0, 1.0) * model.friction(np.abs(at.velocity))
+    drop = model.chain.thresholds * (model.sliding_friction - friction)
+    force = drop - _products(model.chain.stiffness, at.position)
     if model.chain.is_damped:
         force += model.chain.damping_force(at.velocity, model.v)
     return np.concatenate([at.velocity - model.v, np.where(at.stuck, 0.0, force / model.chain.masses)])

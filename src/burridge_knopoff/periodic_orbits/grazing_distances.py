@@ -185,10 +185,11 @@ def _derivatives(model: Model, position: np.ndarray, velocity: np.ndarray, stuck
     speed = np.abs(velocity)
     if chain.is_damped:
         force += chain.damping_force(velocity, model.v)
-    acceleration = (force - np.where(velocity < 0.0, -1.0, 1.0) * chain.thresholds * model.law(speed)) / chain.masses
+    friction = np.where(velocity < 0.0, -1.0, 1.0) * chain.thresholds * model.friction(speed)
+    acceleration = (force - friction) / chain.masses
     if chain.is_damped:
         force_rate -= np.where(stuck, 0.0, acceleration) @ chain.damping_matrix.T
-    jerk = (force_rate - chain.thresholds * model.law.slope(speed) * acceleration) / chain.masses
+    jerk = (force_rate - chain.thresholds * model.friction_slope(speed) * acceleration) / chain.masses
     return force, force_rate, acceleration, jerk
 
 

@@ -1,7 +1,7 @@
 """Hopf bifurcations of uniform sliding along a parameter, in closed form, and the periodic orbits that begin there.
 
 A perturbation of uniform sliding obeys δU'' = −M⁻¹K δU + (G − M⁻¹C) δU', with the diagonal matrices M of the masses and
-G of −threshold·dΦ/dU'/m at U' = v, and C of the dashpots. At a Hopf bifurcation a pair of eigenvalues ±iω of this
+G of −threshold·dΦ(w U')/dU'/m at U' = v, and C of the dashpots. At a Hopf bifurcation a pair of eigenvalues ±iω of this
 Jacobian crosses the imaginary axis, and a branch of periodic orbits without stops begins, with the period 2π/ω. No real
 eigenvalue crosses 0, since K is positive definite. Under a law that is linear in speed the bifurcation is degenerate:
 all these orbits exist at the critical value only, and are neutral.

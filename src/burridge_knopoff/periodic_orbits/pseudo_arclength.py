@@ -134,10 +134,11 @@ def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
 def _natural_size(model: Model, parameter: str) -> float:
     """Return the natural size of a parameter, whatever its value, which may be 0.
 
-    It is the chain's own unit for a parameter of the chain, 1 for one of the law, and 0 for v, whose size is its value.
+    It is the chain's own unit for a parameter of the chain, 1 for weakening and for one of the law, and 0 for v, whose
+    size is its value.
     """
     units, key = model.chain.own_units, parameter_key(parameter)
-    if parameter in model.law.parameters:
+    if parameter in model.law.parameters or key == "weakening":
         return 1.0
     if key == "threshold":
         return units.force

@@ -79,8 +79,8 @@ def missing_isolation(model: Model, reference: ChainState, period: float) -> str
     """
     if is_sliding(model, reference):
         return "the chain slides uniformly there"
-    slopes = model.law.slope(np.abs(_velocities(model, reference, period)))
-    if np.ptp(slopes) > ROUNDING * max(1.0, float(np.abs(slopes).max())):
+    slopes = model.friction_slope(np.abs(_velocities(model, reference, period)))
+    if np.ptp(slopes, axis=0).max() > ROUNDING * max(1.0, float(np.abs(slopes).max())):
         return ""
     return "friction is linear in speed there, so that motion without stops has any amplitude and is neutral"
 

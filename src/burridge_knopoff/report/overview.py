@@ -118,6 +118,8 @@ def chain_text(chain: Chain) -> str:
     parts.append(f"static friction {_format_numbers(chain.threshold)}")
     if chain.mass != 1.0:
         parts.append(f"mass {_format_numbers(chain.mass)}")
+    if chain.weakening != 1.0:
+        parts.append(f"weakening {_format_numbers(chain.weakening)}")
     if np.any(chain.damping):
         parts.append(f"dashpots to neighbours {_format_of_springs(chain, chain.damping)}")
     if np.any(chain.pulling_damping):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from burridge_knopoff.kernel._core import KernelModel
+from burridge_knopoff.laws.law import MAX_SPEED
 from burridge_knopoff.model.model import Model
 
 # A weaker spring to the driver moves a block that creeps less than rounding does.
@@ -27,6 +28,7 @@ def kernel_model(model: Model, loading: str = "steady") -> KernelModel:
         diagonal=chain.diagonal,
         driving=np.ascontiguousarray(chain.driving),
         threshold=np.ascontiguousarray(chain.thresholds),
+        weakening=np.ascontiguousarray(chain.weakenings),
         sliding_force=chain.thresholds * model.sliding_friction,
         mass=np.ascontiguousarray(chain.masses),
         start=start,
@@ -41,7 +43,7 @@ def kernel_model(model: Model, loading: str = "steady") -> KernelModel:
         slope=law.tape.slope,
         linear=law.is_linear,
         rate=-law.initial_slope,
-        steepest=law.steepest_slope,
+        steepest=law.steepest_slope(*(MAX_SPEED * factor for factor in chain.weakening_range)),
         v=v,
         symmetric=model.contact == "symmetric",
         creep_speed=creep_speed(model, loading),
@@ -74,7 +76,7 @@ def rest_speed(model: Model) -> float:
 
 
 def _can_creep(model: Model) -> bool:
-    return model.chain.is_damped or model.law.initial_slope > 0.0
+    return model.chain.is_damped or bool((model.chain.weakenings * model.law.initial_slope > 0.0).any())
 
 
 def _has_unpulled_creep(model: Model) -> bool:
@@ -84,7 +86,7 @@ def _has_unpulled_creep(model: Model) -> bool:
     start, index, _, _ = chain.neighbours
     if (np.repeat(unpulled, np.diff(start)) & unpulled[index]).any():
         return True
-    damping = chain.damping_diagonal + chain.thresholds * model.law.initial_slope
+    damping = chain.damping_diagonal + chain.thresholds * (chain.weakenings * model.law.initial_slope)
     critical = 2.0 * np.sqrt(chain.diagonal * chain.masses)
     return bool((unpulled & (damping >= (1.0 - CRITICAL) * critical)).any())
 
@@ -92,5 +94,5 @@ def _has_unpulled_creep(model: Model) -> bool:
 def _resistance(model: Model) -> np.ndarray:
     """Return the force per speed that slows each block at most, by its springs or by damping."""
     chain = model.chain
-    damping = chain.damping_diagonal + chain.thresholds * max(model.law.initial_slope, 0.0)
+    damping = chain.damping_diagonal + chain.thresholds * np.maximum(chain.weakenings * model.law.initial_slope, 0.0)
     return np.maximum(np.sqrt(chain.diagonal * chain.masses), damping)

@@ -115,7 +115,7 @@ def collect(
     lyapunov = _exponents(runner, settings, completed)
     speed = measured["highest_speed"]
     force = measured["lowest_force"]
-    least_friction = [math.nan if np.isnan(u) else model.law.least_friction(u) for u in (np.fmax(*speed), speed[1])]
+    least_friction = [math.nan if np.isnan(u) else model.least_friction(u) for u in (np.fmax(*speed), speed[1])]
     least_force = [float(value) for value in (np.fmin(*force), force[1])]
     return Trajectory(
         model=model,

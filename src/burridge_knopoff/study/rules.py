@@ -162,8 +162,8 @@ def _reason(model: Model) -> str:
         return "as its friction is not linear in the speed"
     if not model.chain.is_uniform:
         return (
-            "which requires a row with open ends, masses of 1, no dashpots, and one number each for coupling, pulling "
-            "and threshold"
+            "which requires a row with open ends, masses and weakening of 1, no dashpots, and one number each for "
+            "coupling, pulling and threshold"
         )
     return f"as a slope steeper than {model.chain.damping_limit:g} overdamps the blocks"
 

@@ -1,10 +1,10 @@
 """Uniform sliding over (law, a): the positions of the blocks, and the growth of perturbations.
 
-In uniform sliding U_i = vτ + e_i with K e = −Φ(v)·threshold. A perturbation obeys δU'' = −M⁻¹K δU + G δU' with the
-diagonal matrices M of the masses and G of g_i = −threshold_i·dΦ/dU'/m_i at U' = v. Under the linearized law, with
-thresholds and masses of 1, all g_i are a. The growth rates are the eigenvalues λ of the Jacobian [[0, 1], [−M⁻¹K, G]].
-If all g_i have the same value g, a normal mode of M⁻¹K with eigenvalue κ has λ² − gλ + κ = 0. Thus
-λ = g/2 ± i sqrt(κ − g²/4): the real part of every oscillating mode is g/2.
+In uniform sliding U_i = vτ + e_i with K e = −Φ(w v)·threshold. A perturbation obeys δU'' = −M⁻¹K δU + G δU' with the
+diagonal matrices M of the masses and G of g_i = −threshold_i·dΦ(w_i U')/dU'/m_i at U' = v. Under the linearized law,
+with thresholds, masses and weakenings w of 1, all g_i are a. The growth rates are the eigenvalues λ of the Jacobian
+[[0, 1], [−M⁻¹K, G]]. If all g_i have the same value g, a normal mode of M⁻¹K with eigenvalue κ has λ² − gλ + κ = 0.
+Thus λ = g/2 ± i sqrt(κ − g²/4): the real part of every oscillating mode is g/2.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ VARIABLES = {
         (*_CURVE, "block"),
         "f8",
         "position e in uniform sliding: e = U - v*tau",
-        {"comment": "K e = -Phi(v) threshold"},
+        {"comment": "K e = -Phi(w v) threshold, with the weakening w"},
     ),
     "equilibrium_drift": Variable(
         _CURVE,
@@ -65,7 +65,7 @@ VARIABLES = {
         "f8",
         "growth rate with strengthening: if friction increases with velocity, under the law reflected at "
         "the driver velocity",
-        {"comment": "2 Phi(v) - Phi(U'); NaN where this is not a friction law"},
+        {"comment": "2 Phi(v) - Phi(U'); NaN where this is not a friction law, and unless weakening is 1"},
     ),
 }
 MODE = Variable(("mode",), "i4", "number of the eigenvalue: starting with the slowest oscillation", coordinate=True)
@@ -89,6 +89,8 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
             spectrum = eigenvalues(model)
             values["eigenvalue"][i, k] = np.stack([spectrum.real, spectrum.imag], axis=-1)
             values["equilibrium_drift"][i, k], values["growth_rate"][i, k] = simulate_sliding(model, position)
+            if not (model.chain.weakenings == 1.0).all():
+                continue
             try:
                 reverse = replace(model, law=mirror_law(model.law, model.v))
             except ValueError:
@@ -113,7 +115,7 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
 
 
 def sliding_position(model: Model) -> np.ndarray:
-    """Return e with K e = −Φ(v)·threshold, shape (blocks,), independently of the simulation."""
+    """Return e with K e = −Φ(w v)·threshold, shape (blocks,), independently of the simulation."""
     chain = model.chain
     load = -model.sliding_friction * chain.thresholds
     # SciPy rejects a band matrix of a single number.

@@ -114,7 +114,9 @@ def train(chain: Chain, blocks: int) -> Chain:
     """
     first = 1.0 if isinstance(chain.pulling, str) else chain.pulling
     pulling = (first, *(blocks - 1) * (0.0,))
-    parameters = {name: getattr(chain, name) for name in ("threshold", "mass", "damping", "pulling_damping")}
+    parameters = {
+        name: getattr(chain, name) for name in ("threshold", "mass", "damping", "pulling_damping", "weakening")
+    }
     return Chain(blocks, chain.coupling, pulling, **parameters)  # type: ignore[arg-type]
 
 

@@ -147,7 +147,7 @@ def growth(
     evidence.check_blocks()
     sliding = evidence.choose(evidence.summary("equilibrium").sel(law=law), a)
     a_values = sliding["a"].values
-    ratio = sliding["growth_rate"].values / evidence.weakening(law, a_values)
+    ratio = sliding["growth_rate"].values / evidence.negative_damping(law, a_values)
     measured = extremes("growth rate over −F'(v), in simulations", ratio)
     of_rate = worst_verdict(judge_value(item.value, claimed, tolerance, loose) for item in measured)
     readings = {"they grow": HOLDS if (ratio > 0.0).all() else FAILS, "they grow at the rate −F'(v)": of_rate}

@@ -132,7 +132,7 @@ def sticks_unavoidable(evidence: Evidence, *, a: Range = POSITIVE, loose_share: 
     measured = []
     for law in PAPER_LAWS:
         real = equilibrium["eigenvalue"].sel(law=law, part="real").values
-        slope = evidence.weakening(law, equilibrium["a"].values)
+        slope = evidence.negative_damping(law, equilibrium["a"].values)
         shares[f"values of a, {law}"] = count_share(np.all(real > 0.0, axis=-1))
         measured += extremes("real part of an eigenvalue over −F'(v)", real / slope[:, None], law)
         slots = attractors.sel(law=law)

@@ -1,0 +1,121 @@
+"""Blocks that differ in friction: θ_i Φ(w_i U') is the friction of a law with w_i a in place of a."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import (
+    Chain,
+    FormulaLaw,
+    InitialState,
+    Model,
+    hopf_bifurcations,
+    law_of,
+    simulate,
+    sweep,
+    synchronized_orbit,
+)
+from burridge_knopoff.running.kernel_model import creep_speed
+from tests.flows import differences, directions
+from tests.refused import refused
+from tests.scipy_flow import model_events
+
+STATE = InitialState("drawn", (-0.9, -1.0, -1.1), (0.1, 0.12, 0.09))
+OPTIONS = {"initial": STATE, "transient": 0.0, "events": "all"}
+
+
+@pytest.mark.parametrize("name", ["linearized", "nonlinear", "exponential", "carlson_langer"])
+def test_equal_weakening_is_a_factor_of_a(name):
+    runs = [
+        simulate(Model(Chain(3, weakening=w), law_of(name, a), contact="symmetric"), window=40.0, **OPTIONS)
+        for w, a in ((0.25, 0.4), (1.0, 0.1))
+    ]
+    one, other = runs
+    assert one.event_count > 20
+    assert np.array_equal(one.event_block, other.event_block)
+    assert one.event_time == pytest.approx(other.event_time, rel=0.0, abs=1e-9)
+    assert one.mean_distance == pytest.approx(other.mean_distance, rel=1e-9)
+    assert one.lyapunov_exponent == pytest.approx(other.lyapunov_exponent, rel=1e-6)
+    assert one.model.sliding_offset == pytest.approx(other.model.sliding_offset, rel=1e-14)
+    assert one.least_friction == pytest.approx(other.least_friction, rel=1e-12)
+
+
+def test_without_weakening_friction_is_that_of_coulomb():
+    """All laws, and any a, then give the same motion, in which no energy is gained."""
+    chain = Chain(3, weakening=0.0)
+    runs = [
+        simulate(Model(chain, law_of(*law)), window=40.0, **OPTIONS)
+        for law in (("linearized", 0.0), ("nonlinear", 3.0))
+    ]
+    assert np.array_equal(*(run.event_time for run in runs))
+    assert runs[0].least_friction == 1.0
+    assert chain.a_unit == Chain(3).a_unit
+
+
+def test_distances_are_in_proportion_to_v_under_the_linearized_law():
+    chain, means = Chain(3, weakening=(1.0, -0.5, 0.0)), []
+    for v in (0.1, 0.05):
+        model = Model(chain, law_of("linearized", 0.3), v)
+        x = v * np.array([1.0, -2.0, 0.5])
+        state = InitialState("scaled", tuple(model.sliding_offset + x), (v, 1.1 * v, 0.9 * v))
+        means.append(simulate(model, initial=state, transient=0.0, window=40.0).mean_distance / model.scale)
+    assert means[0] == pytest.approx(means[1], rel=1e-9)
+
+
+def test_the_least_friction_is_a_bound_over_all_blocks():
+    """It is that of the block that weakens most at the speed of the fastest block."""
+    model = Model(Chain(3, weakening=(1.0, -0.5, 2.0)), law_of("linearized", 0.2))
+    run = simulate(model, window=20.0, trajectory=20.0, trajectory_sampling=1e-3, **OPTIONS)
+    assert run.least_friction == pytest.approx(1.0 - 0.4 * run.velocity.max(), rel=1e-6)
+
+
+def test_one_block_slides_where_its_dashpot_outweighs_its_friction():
+    """The velocity of sliding obeys u'' = −u − (γ − g) u' with g = a w/(1 + a w v)², which is γ at the bifurcation."""
+    a, v, gamma = 0.5, 0.4, 0.1
+    model = Model(Chain(1, pulling=1.0, pulling_damping=gamma), law_of("nonlinear", a), v, "symmetric")
+    (at,) = hopf_bifurcations(model, (-0.1, 0.6), parameter="weakening[1]")
+    slope = a * at.value / (1.0 + a * at.value * v) ** 2
+    assert slope == pytest.approx(gamma, rel=1e-12)
+    assert at.period == pytest.approx(2.0 * np.pi, rel=1e-9)
+
+
+def test_an_orbit_of_blocks_that_weaken_and_strengthen():
+    """Its return against SciPy, and its monodromy matrix against finite differences."""
+    orbit = synchronized_orbit(Model(Chain(3, weakening=(1.0, -0.3, 1.0)), law_of("nonlinear", 0.15)))
+    _, end = model_events(orbit.model, orbit.reference, orbit.period)
+    assert end == pytest.approx(orbit.reference.vector(), abs=1e-8)
+    expected, _ = differences(orbit.model, orbit.reference, orbit.period, 1e-4)
+    free = directions(orbit.reference).any(axis=0)
+    assert orbit.monodromy[:, free] == pytest.approx(expected[:, free], abs=1e-6)
+
+
+def test_a_sweep_over_the_weakening_of_one_block():
+    model = Model(Chain(3), law_of("linearized", 0.2))
+    runs = sweep(model, initial="plus", **{"weakening[2]": [1.0, -0.5]}, transient=0.0, window=20.0)
+    for factor in (1.0, -0.5):
+        run = simulate(model.at(**{"weakening[2]": factor}), initial="plus", transient=0.0, window=20.0)
+        assert runs["mean_distance"].sel(weakening_2=factor).item() == run.mean_distance
+    assert run.model.chain.weakening == (1.0, -0.5, 1.0)
+    assert run.model.a == 0.2
+
+
+def test_friction_that_grows_must_be_analytic_too():
+    """1/(1 − w a u) has a pole at u = 1/(w a)."""
+    assert Model(Chain(3, weakening=-0.3), law_of("nonlinear", 0.3)).a == 0.3
+    with refused("chain.weakening: (1.0, -0.5, 0.0)", "the law nonlinear is analytic"):
+        Model(Chain(3, weakening=(1.0, -0.5, 0.0)), law_of("nonlinear", 0.3))
+    with refused("chain.weakening: 20.0", "analytic"):
+        Model(Chain(3, weakening=20.0), FormulaLaw(0.1, "1/(1 + a*u) + 0.0001*log(1 - u/64)"))
+
+
+def test_only_blocks_that_strengthen_creep():
+    law = law_of("carlson_langer", 0.05, {"sigma": 0.1})
+    assert creep_speed(Model(Chain(3), law), "quasistatic") == 0.0
+    assert creep_speed(Model(Chain(3, weakening=(1.0, -0.1, 1.0)), law), "quasistatic") > 0.0
+
+
+def test_what_requires_equal_blocks_says_so():
+    with refused("solver: 'map'", "uniform"):
+        simulate(Model(Chain(3, weakening=0.5), law_of("linearized", 0.1)), solver="map")
+    model = Model(Chain(3, weakening=(1.0, 1.0, 0.5)), law_of("linearized", 0.1))
+    with refused("chain", "its own mirror image"):
+        synchronized_orbit(model)
