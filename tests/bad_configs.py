@@ -173,8 +173,8 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "grid": (f"{GOOD}chain: {{grid: [2, 2]}}\n", ["initial.minus: got numbers for 3 blocks, expected 4"]),
     "grid_of_floats": (f"{GOOD}chain: {{grid: [1.5, 2]}}\n", ["chain.grid[0]: 1.5", "a whole number"]),
     "grid_springs": (
-        f"{GOOD}chain: {{grid: [3, 1], coupling: [1, 2]}}\n",
-        ["chain.coupling: got 2 numbers, expected one"],
+        f"{GOOD}chain: {{grid: [3, 1], coupling: [1, 2, 3]}}\n",
+        ["chain.coupling: got 3 numbers, expected 1, or 2: along rows and columns"],
     ),
     "grid_ring": (f"{GOOD}chain: {{grid: [3, 1], ends: ring}}\n", ["chain.ends: got ring, expected open"]),
     "no_springs": (

@@ -172,11 +172,11 @@ def script_answers(monkeypatch):
 @pytest.fixture
 def maps(monkeypatch):
     """Let searches follow maps of the line, see `tests.maps`."""
-    from burridge_knopoff.attractors import convergence, labels, search, slow_set
+    from burridge_knopoff.attractors import candidates, convergence, labels, search, slow_set
     from burridge_knopoff.motion import classification
     from tests.maps import Clouds, Ensemble, observe, visit
 
-    monkeypatch.setattr(search, "sliding_motion", lambda _: SimpleNamespace(exponent=[1.0]))
+    monkeypatch.setattr(candidates, "sliding_motion", lambda _: SimpleNamespace(exponent=[1.0]))
     for module in (convergence, search, slow_set):
         monkeypatch.setattr(module, "visit", visit)
     monkeypatch.setattr(labels, "new_ensemble", Ensemble)

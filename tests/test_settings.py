@@ -119,7 +119,7 @@ def limits(kind, name):
     allowed = fields_of(kind)[name].range
     if isinstance(allowed, Interval):
         low, high = allowed.ends.least, allowed.ends.most
-        bad = [(low - 1.0, high), (low, high + 1.0), (high, high), (high, low), (low,), (low, 1.0, high), ("0", "1")]
+        bad = [(low - 1.0, high), (low, high + 1.0), (high, high), (high, low), (low,), (low, 1.0, high), ("0", "w")]
         return [(low, high), (high - 1.0, high)], [*bad, 1.0]
     if isinstance(allowed, Whole):
         # A tile has at least one row of pixels, and the symmetric samples are among all samples.

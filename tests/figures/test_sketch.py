@@ -29,6 +29,12 @@ def test_what_differs_between_blocks_is_said():
     assert {"$1$", "$1.5$", "$F=1.2$", "a spring of strength $2.5$ couples block 3 to block 1"} <= set(said)
 
 
+def test_the_springs_of_a_grid_are_said():
+    assert "springs of strength $2$ couple a grid of 3 × 2 blocks" in words(grid=(3, 2), coupling=2.0)
+    said = "springs of strength $2$ along rows and $0.5$ along columns couple a grid of 3 × 2 blocks"
+    assert said in words(grid=(3, 2), coupling=(2.0, 0.5))
+
+
 def test_dashpots_are_said():
     said = words(blocks=3, damping=[0.1, 0.3], pulling_damping=0.2)
     assert "dashpots $0.1$ to $0.3$ between blocks\ndashpots $0.2$ to the driver" in said

@@ -132,6 +132,16 @@ def test_only_several_panels_have_letters():
     assert panels[0].get_title(loc="left") == "one"
 
 
+def test_a_title_is_not_broken_between_a_name_and_its_number():
+    panel = Figure((2.0, 2.0)).subplots()
+    label_panels([panel], ["formula law, $v=1.4$, pulling damping 0.1, a title in words"], letters=16)
+    assert panel.get_title(loc="left").split("\n") == [
+        "formula law, $v=1.4$,",
+        "pulling damping 0.1, a title in",
+        "words",
+    ]
+
+
 @pytest.mark.usefixtures("no_collection")
 @pytest.mark.parametrize("rows", [1, 2])
 @pytest.mark.parametrize(

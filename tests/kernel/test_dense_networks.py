@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, ChainState, Model, law_of
-from burridge_knopoff.kernel._core import Catalogue, Exponents
+from burridge_knopoff.kernel._core import Catalogue, Exponents, run_in_lockstep
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import MOST_NUMBERS
@@ -21,6 +21,21 @@ def network(path, side, cut_off=np.inf, damping=0.0):
     springs = np.stack([first + 1, second + 1, 9.0 / distance**3, damping / distance], axis=1)[joined]
     np.savetxt(path, springs, fmt=["%d", "%d", "%.17g", "%.17g"])
     return Chain(springs=str(path), pulling=1.0)
+
+
+#: Numbers of blocks and of their neighbours on both sides of the numbers from which on forces follow by increments
+#: (24 blocks with 9 neighbours) and from which on the whole network is faster as a single group (28 with 10).
+AT_SWITCHES = [(23, 22), (24, 23), (24, 8), (24, 9), (28, 8), (28, 9), (28, 10)]
+
+
+def ring(path, blocks, neighbours):
+    """Return blocks on a ring with springs 9/r³ to the nearest neighbours; an odd one is the block opposite."""
+    steps = [*range(1, neighbours // 2 + 1), *[blocks // 2] * (neighbours % 2)]
+    springs = {tuple(sorted((i, (i + step) % blocks))): 9.0 / step**3 for step in steps for i in range(blocks)}
+    path.write_text("".join(f"{i + 1} {k + 1} {strength!r}\n" for (i, k), strength in springs.items()))
+    chain = Chain(springs=str(path), pulling=1.0)
+    assert (np.diff(chain.neighbours.start) == neighbours).all()
+    return chain
 
 
 def rest(model, seed=1):
@@ -52,6 +67,32 @@ def test_events_equal_those_of_scipy(tmp_path, groups, damping, cut_off):
     assert np.allclose(own[0], [event[0] for event in events], rtol=0.0, atol=1e-8)
     assert own[1:].T.tolist() == [[block - 1, kind] for _, block, kind in events]
     assert np.allclose(final.vector(), vector, rtol=0.0, atol=1e-7)
+
+
+@pytest.mark.parametrize(("blocks", "neighbours"), AT_SWITCHES)
+def test_networks_at_the_switches_of_the_method(tmp_path, blocks, neighbours):
+    """Events are those of SciPy in groups and as a whole; parts and runs in lanes equal the whole run to the bit."""
+    model = model_of(ring(tmp_path / "springs.txt", blocks, neighbours), v=0.05)
+    starts, end = [rest(model, seed) for seed in range(3)], 5.0
+    events, vector = model_events(model, starts[0], end)
+    assert sum(kind == 0 for *_, kind in events) > 3
+    for groups in (True, False):
+        final, own = run(model, starts[0], end, groups=groups)
+        assert np.allclose(own[0], [event[0] for event in events], rtol=0.0, atol=1e-8)
+        assert own[1:].T.tolist() == [[block - 1, kind] for _, block, kind in events]
+        assert np.allclose(final.vector(), vector, rtol=0.0, atol=1e-7)
+    alone = [run(model, start, end) for start in starts]
+    together = [Runner(model, keep_events=True) for _ in starts]
+    for runner, start in zip(together, starts, strict=True):
+        runner.begin(start)
+        runner.kernel.end = end
+    assert run_in_lockstep([runner.kernel for runner in together]) == [Status.COMPLETED] * 3
+    for runner, start, (final, own) in zip(together, starts, alone, strict=True):
+        first, earlier = run(model, start, 0.2 * end)
+        last, later = run(model, first, end)
+        for state, changes in ((last, np.concatenate([earlier, later], axis=1)), (runner.final(), runner.events())):
+            assert np.array_equal(state.vector(), final.vector())
+            assert np.array_equal(np.stack(changes), own)
 
 
 @pytest.mark.parametrize("loading", ["steady", "quasistatic"])

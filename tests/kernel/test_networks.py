@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.status import Status
 from tests.flows import carry, differences, directions
 
 NETWORK = str(Path(__file__).with_name("damped_network.txt"))
@@ -40,3 +42,28 @@ def test_perturbations_against_differences(law, chain):
     assert expected is not None
     free = directions(start).any(axis=0)
     assert np.allclose(perturbations[:, free], expected[0][:, free], rtol=0.0, atol=1e-6 * np.abs(perturbations).max())
+
+
+@pytest.mark.parametrize("sides", [(6, 1), (1, 6), (3, 3), (5, 5)])
+def test_a_grid_with_two_couplings_moves_as_the_network_of_a_file(tmp_path, sides):
+    """To the bit in a single row or column, in which the neighbours of the network have the same order."""
+    (nx, ny), path = sides, tmp_path / "springs.txt"
+    along_rows = [(x + nx * y, x + 1 + nx * y) for y in range(ny) for x in range(nx - 1)]
+    along_columns = [(x + nx * y, x + nx * (y + 1)) for y in range(ny - 1) for x in range(nx)]
+    lines = [f"{i + 1} {k + 1} 3.0 0.0" for i, k in along_rows] + [f"{i + 1} {k + 1} 0.7 0.2" for i, k in along_columns]
+    path.write_text("\n".join(lines))
+    grid = Chain(grid=sides, coupling=(3.0, 0.7), damping=(0.0, 0.2), pulling=1.0)
+    results = []
+    for chain in (grid, Chain(springs=str(path), pulling=1.0)):
+        assert np.array_equal(chain.stiffness, grid.stiffness)
+        model = Model(chain, law_of("nonlinear", 0.2))
+        runner = Runner(model, keep_events=True)
+        runner.begin(rest(model))
+        assert runner.run(8.0) == Status.COMPLETED
+        results.append((np.stack(runner.events()), runner.final().vector()))
+    (events, state), (other_events, other_state) = results
+    assert (events[2] == 1).any()
+    assert np.array_equal(events[1:], other_events[1:])
+    rounding = 0.0 if 1 in sides else 1e-11
+    assert np.allclose(events[0], other_events[0], rtol=0.0, atol=rounding)
+    assert np.allclose(state, other_state, rtol=0.0, atol=rounding)

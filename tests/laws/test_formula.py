@@ -86,8 +86,10 @@ def test_the_way_to_give_a_formula_is_named():
     for text, formula in {"1/(1 + a*u)": "1/(1 + a*u)", "coulomb": "1 - a*u"}.items():
         with refused(f"law: {text!r}", f'{{"formula": "{formula}"}}'):
             law_of(text, 0.1)
+        assert law_of({"formula": formula}, 0.1) == FormulaLaw(0.1, formula)
     with refused("law: 'linear'", "linearized?"):
         law_of("linear", 0.1)
+    assert law_of({"law": "stribeck", "sigma": 0.1}, 0.2, eta=0.3) == law_of("stribeck", 0.2, sigma=0.1, eta=0.3)
 
 
 @pytest.mark.parametrize(

@@ -74,10 +74,10 @@ def test_branches_along_other_parameters(parameter):
 def test_the_map_of_one_block_is_over_its_position_and_velocity():
     """Where the block sticks in the end by SciPy, the branch is that of sticking."""
     model = oscillator(1.4)
-    basins, attractors = basin_map(model, pixels=3, first_position=(-2.0, 2.0), first_velocity=(-0.6, 1.4), **QUICK)
+    basins, attractors = basin_map(model, pixels=3, first_position=(-2.0, 2.0), first_velocity=("v - 2", 1.4), **QUICK)
     plane, slots = basins.isel(map=0), attractors.isel(law=0, a=0)
     assert plane["branch"].dims == ("first_velocity", "first_position")
-    assert basins.attrs["velocity_range"].tolist() == [-0.6, 1.4]
+    assert basins.attrs["velocity_range"].tolist() == pytest.approx([-0.6, 1.4])
     (sticking,) = np.unique(slots["branch"].values[slots["stop_rate"].values[:, 0] > 0.0])
     reached = plane["branch"].values == sticking
     assert 0 < reached.sum() < reached.size
@@ -130,8 +130,19 @@ def test_velocities_below_0_need_symmetric_contact():
     assert SearchSettings(velocity=(-0.5, 1.5)).box(model)[1] == (-0.5, 1.5)
     assert SearchSettings(**BOX).box(model)[1] == pytest.approx((-0.6, 1.4))
     find_attractors(model, samples=2, velocity=(-0.5, 1.5), transient=50, window=50, time_limit=50)
-    for wrong in ((-0.5, 1.5), ("v - 1", "v"), ("v", "0.5*v"), (0.0, "w"), ("0", "1"), "v"):
+    for wrong in ((-0.5, 1.5), ("v - 1", "v"), ("v", "0.5*v"), (0.0, "w"), ("1", "0"), "v"):
         with refused("velocity"):
             find_attractors("linearized", 0.08, samples=2, velocity=wrong)
-    with refused("first_velocity"):
-        basin_map("linearized", 0.08, blocks=1, first_velocity=(-0.5, 0.5))
+        with refused("first_velocity"):
+            basin_map("linearized", 0.08, blocks=1, first_velocity=wrong)
+
+
+def test_a_quoted_constant_is_its_number():
+    assert SearchSettings(velocity=("0", "1/2")).velocity == (0.0, 0.5)
+    assert SearchSettings(velocity=("0", "2*v")).box(oscillator(1.4))[1] == (0.0, 2.8)
+
+
+def test_a_range_that_is_not_that_of_an_axis_is_refused():
+    for blocks, name in ((1, "last_position"), (3, "first_velocity")):
+        with refused(f"{name}: (0.0, 0.5)", "in its place"):
+            basin_map("linearized", 0.08, initial=([0.0] * blocks, [0.1] * blocks), **{name: (0.0, 0.5)})

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray
 
-from burridge_knopoff import Chain, Model, law_of, simulate, sweep
+from burridge_knopoff import Chain, Model, continue_attractors, law_of, simulate, sweep
 from tests.refused import refused
 
 SHORT = {"transient": 50.0, "window": 50.0, "batches": 2}
@@ -76,6 +76,20 @@ def test_the_number_of_one_block_is_a_dimension():
         assert runs["mean_distance"].sel(mass_3=mass).item() == run.mean_distance
     with refused("mass[4]"):
         sweep(model, **{"mass[4]": [1.0, 1.2]}, **SHORT)
+
+
+@pytest.mark.parametrize("third", [1.1, [1.1, 1.3]])
+def test_the_number_of_one_block_takes_precedence_over_a_sequence_for_all(third):
+    """As in `Model.at`."""
+    model, masses = Model(Chain(3), law_of("linearized", 0.08)), [1.0, 1.2]
+    runs = sweep(model, initial="plus", mass=masses, **{"mass[3]": third}, **SHORT)
+    assert runs["mean_distance"].dims == ("mass", "mass_3")[: 1 + isinstance(third, list)]
+    for mass, single in product(masses, np.atleast_1d(third).tolist()):
+        run = simulate(Model(Chain(3, mass=(mass, mass, single)), model.law), initial="plus", **SHORT)
+        point = {"mass": mass, "mass_3": single} if "mass_3" in runs.dims else {"mass": mass}
+        assert runs["mean_distance"].sel(point) == run.mean_distance
+    with refused("mass[3]"):
+        continue_attractors(model, mass=masses, samples=2, **{"mass[3]": 1.1})
 
 
 def test_parameters_with_one_value_are_not_dimensions():

@@ -126,6 +126,25 @@ def test_a_grid(columns, rows, coupling, pulling, damping):
     check_algebra(chain)
 
 
+@given(st.integers(1, 5), st.integers(1, 5), st.tuples(strength, strength), st.sampled_from([0.0, (0.2, 0.0)]))
+def test_a_grid_with_two_couplings(columns, rows, coupling, damping):
+    """K and C by Kronecker products of the matrices of a row of columns and a row of rows."""
+    chain = Chain(grid=[columns, rows], coupling=coupling, damping=damping, pulling=0.3)
+
+    def laplacian(count):
+        step = np.diff(np.eye(count), axis=0)
+        return step.T @ step
+
+    def total(x, y):
+        return np.kron(np.eye(rows), x * laplacian(columns)) + np.kron(y * laplacian(rows), np.eye(columns))
+
+    assert np.allclose(chain.stiffness, total(*coupling) + 0.3 * np.eye(chain.blocks), rtol=0, atol=1e-13)
+    assert np.allclose(chain.damping_matrix, total(*np.broadcast_to(damping, 2)), rtol=0, atol=1e-13)
+    check_algebra(chain)
+    # The springs to the driver are as many as the neighbours, whatever the strengths.
+    assert (Chain(grid=[columns, rows], coupling=coupling).driving == Chain(grid=[columns, rows]).driving).all()
+
+
 @pytest.mark.parametrize(
     ("chain", "start", "index", "springs", "dashpots"),
     [
@@ -265,6 +284,7 @@ def test_refused_networks(tmp_path):
         ({"blocks": 5}, "chain.pulling: 0"),
         ({"blocks": 3, "pulling": 1}, "chain.springs: block 4"),
         ({"coupling": 2.0}, "chain.coupling: 2.0"),
+        ({"coupling": (1.0, 1.0)}, "chain.coupling: (1.0, 1.0)"),
         ({"ends": "ring"}, "chain.ends: ring"),
         ({"grid": (2, 2)}, "chain.grid: [2, 2]"),
         ({"mass": [1, 2]}, "chain.mass"),
@@ -275,6 +295,8 @@ def test_refused_networks(tmp_path):
         ({"blocks": 5}, "chain.blocks: 5"),
         ({"grid": (2,)}, "chain.grid: (2,)"),
         ({"grid": (2000, 2000)}, "chain.grid: [2000, 2000]"),
+        ({"coupling": (1, 2, 3)}, "chain.coupling: 3 numbers"),
+        ({"damping": (1,)}, "chain.damping: a list of 1 number"),
         ({"pulling": 0.0}, "chain.pulling: 0.0"),
         ({"threshold": {**UNIFORM, "high": 0.25}}, "chain.threshold.high: 0.25"),
         ({"threshold": "random=uniform,low=1"}, "chain.threshold.high"),

@@ -49,6 +49,8 @@ DRAWN = Model(Chain(3, threshold="random=uniform,low=0.9,high=1.1,seed=1"), MODE
         # Spring i joins blocks i and i + 1, and the last one of a ring the last block to the first.
         (RING, {"coupling[4]": 2.0}, Chain(4, ends="ring", coupling=(1.0, 1.0, 1.0, 2.0))),
         (Model(Chain(grid=(2, 2)), MODEL.law), {"mass[4]": 2.0}, Chain(grid=(2, 2), mass=(1.0, 1.0, 1.0, 2.0))),
+        # The springs of a grid have one number along rows and one along columns.
+        (Model(Chain(grid=(2, 3)), MODEL.law), {"coupling[2]": 2.0}, Chain(grid=(2, 3), coupling=(1.0, 2.0))),
         (
             Model(Chain(2), FormulaLaw(0.1, "1/(1 + a*u*mass)", mass=2.0)),
             {"mass[1]": 3.0},
@@ -90,7 +92,8 @@ def test_the_contact_and_the_shape_of_the_chain_are_kept():
         (MODEL, {"mass[0]": 1.0}, "mass[0]"),
         (MODEL, {"coupling[3]": 1.0}, "coupling[3]"),
         (Model(Chain(1), MODEL.law), {"coupling[1]": 1.0}, "coupling[1]"),
-        (Model(Chain(grid=(2, 2)), MODEL.law), {"coupling[1]": 1.0}, "coupling[1]"),
+        (Model(Chain(grid=(2, 2)), MODEL.law), {"coupling[3]": 1.0}, "coupling[3]: direction 3"),
+        (Model(Chain(2, springs={"distance": "1/r"}, pulling=1.0), MODEL.law), {"coupling[1]": 1.0}, "coupling[1]"),
         (MODEL, {"mass[3]": 0.0}, "mass[3]: 0.0"),
         (MODEL, {"mass[3]": None}, "mass[3]: None"),
         (MODEL, {"mass[03]": 1.0}, "'mass[03]'"),

@@ -268,3 +268,12 @@ def test_invalid_planes_are_refused(families, options, words):
         follow_bifurcation(pitchfork, **options)
     with refused("mass: (1.0, 1.0, 1.0)"):
         follow(synchronized_orbit(Model(Chain(3, mass=(1.0, 1.0, 1.0)), MODEL.law)), parameter="mass")
+
+
+def test_the_springs_along_the_columns_of_a_grid():
+    """In a single column they are those of a row."""
+    grid = Model(Chain(grid=(1, 3), coupling=(7.0, 1.0)), law_of("linearized", 0.08))
+    last = follow(grid, (0.98, 1.0), parameter="coupling[2]", upward=False, initial="minus")[-1]
+    assert last.value < 0.985
+    row = Model(Chain(3, coupling=last.value), grid.law)
+    assert last.orbit.period == pytest.approx(synchronized_orbit(row).period, abs=1e-9)

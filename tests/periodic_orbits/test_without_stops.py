@@ -338,6 +338,9 @@ def test_uniform_sliding_is_no_orbit():
         find_periodic_orbit(model, sliding_state(model), 3.0, Symmetry.SYNCHRONIZED)
     with pytest.raises(OrbitError, match="settles on uniform sliding"):
         settled(model, 0.6, 0.8)
+    unstable = Model(Chain(3), law_of("nonlinear", 0.3))
+    with pytest.raises(OrbitError, match="uniform sliding, which is unstable: start from a displaced state"):
+        limit_cycle(unstable, sliding_state(unstable))
 
 
 def test_an_interval_without_ends_is_refused():

@@ -142,8 +142,8 @@ def test_a_summary_as_its_figure(study, tmp_path, capsys, name, words):
 
 
 def test_what_cannot_be_drawn_is_said_in_a_line(study, tmp_path, capsys):
-    alone = shutil.copy(study / "summary/basins.nc", tmp_path)
-    assert "its figure also needs attractors.nc" in output_of(capsys, alone, "--plot", "x.png", code=2)
+    alone = shutil.copy(study / "summary/mean_distance.nc", tmp_path)
+    assert "its figure also needs orbits.nc" in output_of(capsys, alone, "--plot", "x.png", code=2)
     assert "x.doc: " in output_of(capsys, alone, "--plot", "x.doc", code=2)
     assert "folder no does not exist" in output_of(capsys, alone, "--plot", "no/x.png", code=2)
 

@@ -96,6 +96,11 @@ BAD_CHANGES = [
     ({"basins": {"pixels": 4, "tiles": 5}}, ["basins.tiles: 5", "4 rows"]),
     ({"basins": {"initial": "middle"}}, ["basins.initial: 'middle'", "minus | plus"]),
     ({"basins": {"last_position": [0, 0]}}, ["basins.last_position: [0, 0]", "low < high"]),
+    ({"basins": {"first_velocity": [0, 1]}}, ["basins.first_velocity: (0.0, 1.0)", "last_position in its place"]),
+    (
+        {"basins": {"last_position": [0, 1]}, "initial": {"one": {"position": 0, "velocity": 0}}},
+        ["basins.last_position: (0.0, 1.0)", "first_velocity in its place"],
+    ),
     ({"phases": {"a": [0.0801]}}, ["phases.a: 0.0801", "grid"]),
     ({"phases": {"a": 0.1}}, ["phases.a: 0.1", "list"]),
     ({"phases": {"amplitude": [0.0]}}, ["phases.amplitude[0]: 0.0", "above 0"]),

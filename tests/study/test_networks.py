@@ -32,6 +32,7 @@ def folder(tmp_path, monkeypatch):
     ("chain", "blocks"),
     [
         ({"grid": [3, 2], "coupling": 2, "mass": UNIFORM, "threshold": UNIFORM}, 6),
+        ({"grid": [3, 2], "coupling": [2, 0.5], "damping": [0, 0.1]}, 6),
         ({"springs": "faults.txt", "mass": [1, 2, 1]}, 3),
         ({"springs": "faults.txt", "blocks": 4, "pulling": 1}, 4),
         ({"blocks": 5, "ends": "ring", "mass": 2}, 5),

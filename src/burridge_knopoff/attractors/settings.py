@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
-import numpy as np
-
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.random_numbers import SEED
 from burridge_knopoff.model.ranges import Number, Whole
-from burridge_knopoff.model.sampling import POSITION, POSITIONS, VELOCITIES, VELOCITY_AT_SPEED
+from burridge_knopoff.model.sampling import POSITION, POSITIONS, VELOCITIES, VELOCITY_AT_SPEED, velocity_range
 from burridge_knopoff.running.settings import TIME
 
 
@@ -83,9 +81,7 @@ class SearchSettings:
 
         Raises ValueError, one line, for velocities below 0 under one-sided contact.
         """
-        velocity = VELOCITY_AT_SPEED.at(self.velocity, model.v, "velocity")
-        model.check_directions(np.array(velocity), "velocity")
-        return self.position, velocity
+        return self.position, velocity_range(self.velocity, model, "velocity")
 
     @property
     def label_limit(self) -> float:

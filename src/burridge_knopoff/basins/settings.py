@@ -6,14 +6,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
-import numpy as np
-
-from burridge_knopoff.model.fields import check_fields, settings
+from burridge_knopoff.messages import refusal
+from burridge_knopoff.model.fields import check_fields, fields_of, settings
 from burridge_knopoff.model.initial import PAPER_STATES, InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.random_numbers import SEED
 from burridge_knopoff.model.ranges import Number, Several, Whole
-from burridge_knopoff.model.sampling import POSITION, POSITIONS, SAMPLES, VELOCITIES
+from burridge_knopoff.model.sampling import (
+    POSITION,
+    POSITIONS,
+    SAMPLES,
+    VELOCITIES,
+    VELOCITY_AT_SPEED,
+    velocity_range,
+)
 from burridge_knopoff.running.settings import TIME
 from burridge_knopoff.values import instance_of
 
@@ -33,7 +39,9 @@ class BasinSettings:
     first_position: Annotated[Sequence[float], POSITION, "range of U_1(0)"] = POSITIONS
     last_position: Annotated[Sequence[float], POSITION, "range of U_N(0)"] = POSITIONS
     first_velocity: Annotated[
-        Sequence[float], POSITION, "range of U_1'(0), in place of U_N(0), in the map of one block"
+        Sequence[float | str],
+        VELOCITY_AT_SPEED,
+        "range of U_1'(0), in place of U_N(0), in the map of one block; below 0 only under contact symmetric",
     ] = VELOCITIES
     pairs: Annotated[
         int,
@@ -58,12 +66,16 @@ class BasinSettings:
     def rows(self, model: Model) -> tuple[str, Sequence[float]]:
         """Return the name and the range of the second axis of a map; the first one is that of U_1(0).
 
-        Raises ValueError, one line, for velocities below 0 under one-sided contact.
+        Raises ValueError, one line, for a range that is not that of an axis, and for velocities below 0 under one-sided
+        contact.
         """
-        if model.blocks > 1:
-            return "last_position", self.last_position
-        model.check_directions(np.array(self.first_velocity), "first_velocity")
-        return "first_velocity", self.first_velocity
+        row, other, end, of = "last_position", "first_velocity", "U_N(0)", f"{model.blocks} blocks"
+        if model.blocks == 1:
+            row, other, end, of = other, row, "U_1'(0)", "one block"
+        if getattr(self, other) != fields_of(BasinSettings)[other].default:
+            place = f"{row} in its place: the map of {of} is over U_1(0) and {end}"
+            raise refusal(other, getattr(self, other), place)
+        return row, self.last_position if model.blocks > 1 else velocity_range(self.first_velocity, model, row)
 
 
 @settings

@@ -47,7 +47,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     out.add_argument(
         "--attractors-out",
         metavar="FILE",
-        help="also write the attractors; `bk show --plot` of the map reads attractors.nc in the same folder",
+        help="also write the attractors; `bk show --plot` of the map takes the colours of attractors.nc in its folder",
     )
 
 
@@ -72,8 +72,8 @@ def run(options: argparse.Namespace) -> int:
     slots = attractors.isel(law=0, a=0)
     reached = zip(slots["branch"].values.tolist(), slots["side"].values.tolist(), strict=True)
     shares = [f"{100 * ((branch == number) & (side == of)).mean():.2f} %" for number, of in reached]
-    row, axis = ("last_position", f"U_{model.blocks}(0)") if model.blocks > 1 else ("first_velocity", "U_1'(0)")
-    first, last = ("{:g} to {:g}".format(*getattr(options, key)) for key in ("first_position", row))
+    row, axis = ("last_range", f"U_{model.blocks}(0)") if model.blocks > 1 else ("velocity_range", "U_1'(0)")
+    first, last = ("{:g} to {:g}".format(*basins.attrs[key]) for key in ("first_range", row))
     pixels = options.pixels
     print_lines(f"{model_line(model)}: {pixels} x {pixels} states, U_1(0) {first}, {axis} {last}", "")
     print_lines(*attractor_table(attractors, {"of the plane": shares}))

@@ -272,4 +272,4 @@ def model_line(model: Model) -> str:
     numbers: Mapping[str, float] = model.law.parameters
     parameters = "".join(f", {name} = {value:g}" for name, value in numbers.items())
     a = f", a = {model.a:g}" if model.law.has_a else ""
-    return f"{model.law.name} law{parameters}{a}, v = {model.v:g}, {model.blocks} blocks"
+    return f"{model.law.name} law{parameters}{a}, v = {model.v:g}, {model.blocks} block{'s' * (model.blocks > 1)}"

@@ -32,6 +32,9 @@ in this plane are marked with their names.
 
 COLUMNS = 2
 
+# Number of letters of a title for each inch of a panel, of which the axis label takes a part.
+LETTERS = 14
+
 
 @styled
 def draw(basins: xarray.Dataset, attractors: xarray.Dataset | None, marked_states: Mapping[str, ArrayLike]) -> Figure:
@@ -65,7 +68,7 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset | None, marked_state
         if number % columns:
             panel.set_ylabel("")
     legend_below(figure, _in_order(patches))
-    label_panels(list(panels.flat)[:count], titles)
+    label_panels(list(panels.flat)[:count], titles, LETTERS)
     return figure
 
 

@@ -89,7 +89,9 @@ def _words(chain: Chain) -> list[str]:
         lines.append(f"a spring of strength ${chain.coupling_to_next[-1]:g}$ couples block {chain.blocks} to block 1")
     elif chain.grid:
         size = f"{chain.grid[0]} × {chain.grid[1]}"
-        lines.append(f"springs of strength ${chain.coupling:g}$ couple a grid of {size} blocks")
+        x, y = chain.parameter_values("coupling")
+        strength = f"${x:g}$" if x == y else f"${x:g}$ along rows and ${y:g}$ along columns"
+        lines.append(f"springs of strength {strength} couple a grid of {size} blocks")
     for values, where in ((chain.neighbours.damping, "between blocks"), (chain.driver_damping, "to the driver")):
         if values.any():
             strength = f"{values.min():g}" if np.ptp(values) == 0.0 else f"{values.min():g}$ to ${values.max():g}"

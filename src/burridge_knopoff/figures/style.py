@@ -224,10 +224,10 @@ def _padded(handles: Sequence[Artist], columns: int) -> list[Artist]:
 
 
 def _wrapped(title: str, letters: int) -> str:
-    """Break a title into lines of a length; a formula, which is half commands, is not broken."""
+    """Break a title into lines of a length, but no formula, which is half commands, and no name with its number."""
     lines = [""]
     length = 0
-    for word in re.findall(r"(?:\$[^$]*\$|[^ $])+", title):
+    for word in re.findall(r"(?<=, )(?:[^ ,$]+ ){1,3}[-+.\de]+,?(?= |$)|(?:\$[^$]*\$|[^ $])+", title):
         size = len(re.sub(r"\$[^$]*\$", lambda formula: formula[0][: len(formula[0]) // 2], word))
         if lines[-1] and length + 1 + size > letters:
             lines.append("")

@@ -26,9 +26,16 @@ LAWS: Mapping[str, type[Law]] = {
 }
 
 
-def law_of(name: str, a: float | None = None, description: Mapping[str, Any] | None = None, **parameters: Any) -> Law:
+#: A law as in a config, see `law_of`.
+Description = Mapping[str, Any]
+
+
+def law_of(
+    name: str | Description, a: float | None = None, description: Description | None = None, **parameters: Any
+) -> Law:
     """Return a friction law by name, at a value of a, which a formula without a does not need.
 
+    name : or, in its place, the description of a law without a name of its own
     parameters : those of the law other than a, such as sigma
     description : the same as a mapping, as in a config: for a law given by a formula, `formula` and its parameters; for
         a built-in law, its parameters, and `law`, the name of the built-in law, if `name` is a different one
@@ -43,9 +50,13 @@ def law_of(name: str, a: float | None = None, description: Mapping[str, Any] | N
     <law carlson_langer: (1 - sigma)/(1 + a*u/(1 - sigma)), a=0.5, sigma=0.02>
     >>> law_of("mine", 0.5, formula="(1 - drop)*exp(-a*u)", drop=0.02).name
     'mine'
+    >>> law_of({"formula": "1/(1 + a*u)"}, 0.5)
+    <law formula: 1/(1 + a*u), a=0.5>
     """
     if not isinstance(description, Mapping | None):
         raise refusal("description", description, "a mapping with the parameters of a law, and its formula if any")
+    if isinstance(name, Mapping):
+        return law_of(name.get("law", "formula"), a, {**name, **(description or {})}, **parameters)
     values = dict(description or {})
     for key in values.keys() & parameters.keys():
         raise ValueError(f"{key}: got two values, expected one")

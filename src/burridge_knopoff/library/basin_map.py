@@ -31,7 +31,7 @@ def basin_map(
     pixels: int = 64,
     first_position: Sequence[float] = POSITIONS,
     last_position: Sequence[float] = POSITIONS,
-    first_velocity: Sequence[float] = VELOCITIES,
+    first_velocity: Sequence[float | str] = VELOCITIES,
     chain: Chain | None = None,
     blocks: int | None = None,
     v: float | None = None,
@@ -50,7 +50,7 @@ def basin_map(
         minus, which has three blocks. The map of one block, over U_1(0) and U_1'(0), needs none
     start : moving or tested, see `Model.begin`
     pixels : along each axis; first_position, last_position : ranges [low, high] of U_1(0) and U_N(0)
-    first_velocity : range of U_1'(0), for one block
+    first_velocity : range of U_1'(0), for one block; its ends may be formulas of v
     samples, seed : initial states of the search for attractors; an attractor that none of them reaches is not found,
         and its basin is undetermined (−1)
     threads : number of threads; the map does not depend on it

@@ -19,6 +19,7 @@ from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import STARTS, Model
+from burridge_knopoff.model.parameters import parameter_key
 from burridge_knopoff.model.ranges import OneOf, Whole
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.running.cores import available_cores
@@ -90,10 +91,12 @@ def continue_attractors(
     # Imported here so that xarray is loaded only for a Dataset.
     from burridge_knopoff.summaries.attractors_along import reserved_names, summarize
 
-    base, axes = parameter_grid(law, parameters, shape, SearchSettings, reserved_names())
+    base, axes, kept = parameter_grid(law, parameters, shape, SearchSettings, reserved_names())
     if len(axes) != 1:
         name = base.parameter_names[0]
         raise ValueError(f"{name}: got {len(axes)} parameters with several values, expected one, {name} or another")
+    for name in kept:
+        raise ValueError(f"{name}: got a number beside several for all, expected {parameter_key(name)} alone")
     states = [initial_numbers(base, state, f"starts[{number}]") for number, state in enumerate(given)]
     ((parameter, values),) = axes.items()
     values.sort()

@@ -95,7 +95,7 @@ def _law_at(law: GivenLaw, a: float | None, numbers: Mapping[str, Any], settings
     if a is None and not has_own_a(law):
         raise ValueError("a: got None without a Model or a Law, expected a number of at least 0")
     if isinstance(law, Mapping):
-        return law_of(law.get("law", "formula"), a, {**law, **numbers})
+        return law_of({**law, **numbers}, a)
     if isinstance(law, str) and law in LAWS:
         for name in numbers:
             if name not in LAWS[law].defaults:

@@ -31,7 +31,7 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.model.parameters import plain_name, remarks_on_states
+from burridge_knopoff.model.parameters import parameter_key, parse_indexed_name, plain_name, remarks_on_states
 from burridge_knopoff.model.ranges import Whole
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
@@ -99,8 +99,9 @@ def sweep(
     a : friction parameters, shape (n,), or one number; by default that of a `Model` or a `Law`
     initial : a state in any form that `simulate` takes, or a list of states; in a list, numbers have a name:
         `{"name": …, "position": …, "velocity": …}` or an `InitialState`
-    by_name : other parameters, v, those of the chain such as coupling, or of one block or spring such as `mass[3]`, and
-        the parameters of the law such as sigma, each one number or a sequence; and settings of the run by name
+    by_name : other parameters, v, those of the chain such as coupling, or of one block or spring such as `mass[3]`,
+        which takes precedence, and the parameters of the law such as sigma, each one number or a sequence; and settings
+        of the run by name
     motion : thresholds of the kinds of motion, for v = 0.1; None leaves out `kind` and `period`, which take up to a
         fifth of the time of a run of default length
     settings, chain, blocks, contact : see `simulate`
@@ -141,12 +142,12 @@ def sweep(
         grids.append(_call_at(place, parameter_grid, item, parameters, shape, Settings, _RESERVED))
     axes: dict[str, list[Any]] = {}
     if is_sequence(law):
-        names = [base.law.name for base, _ in grids]
+        names = [base.law.name for base, *_ in grids]
         axes["law"] = _different(names, "law", ": law_of(name, a, …) gives a law a name")
     if is_list_of_states(initial):
         axes["initial"] = [*states]
     axes |= grids[0][1]
-    points = [point for base, values in grids for point in _points(base, values, states, axes, chosen)]
+    points = [point for grid in grids for point in _points(*grid, states, axes, chosen)]
     costly = max(points, key=lambda point: point.model.chain.highest_rate)
     warn_of_run(costly.model, costly.state, chosen)
     size = min(LOCKSTEP_RUNS, -(-len(points) // cores))
@@ -176,8 +177,10 @@ def _different(values: list[_T], name: str, hint: str = "") -> list[_T]:
 
 def parameter_grid(
     law: Any, parameters: Mapping[str, Any], shape: Mapping[str, Any], settings: type, reserved: Collection[str]
-) -> tuple[Model, dict[str, list[float]]]:
-    """Return the model with all single-valued parameters, and the values of those given as sequences.
+) -> tuple[Model, dict[str, list[float]], dict[str, float]]:
+    """Return the model with all single-valued parameters, the values of those given as sequences, and values to keep.
+
+    The latter are of one block or spring, such as `mass[3]`, and take precedence over those of a sequence for all.
 
     shape : further arguments of `model_of`; settings : class of the settings of the call
     reserved : names of the result that no parameter with several values can have
@@ -195,21 +198,28 @@ def parameter_grid(
         if not values:
             raise ValueError(f"{full_key('', name)}: got no value, expected at least one")
     first = {name: axes[name][0] if name in axes else value for name, value in parameters.items()}
+    single = {name: first.pop(name) for name in parameters if parse_indexed_name(name) and parameter_key(name) in axes}
     base = model_of(law, first.pop("a", None), **shape, parameters=first, settings=fields_of(settings))
+    kept = {name: base.at(**{name: value}).parameter(name) for name, value in single.items() if name not in axes}
     for name, values in axes.items():
         axes[name] = _different([base.at(**{name: value}).parameter(name) for value in values], name)
-    return base, axes
+    return base, axes, kept
 
 
 def _points(
-    base: Model, grid: Mapping[str, list[float]], states: Mapping[str, Any], axes: Iterable[str], settings: Settings
+    base: Model,
+    grid: Mapping[str, list[float]],
+    kept: Mapping[str, float],
+    states: Mapping[str, Any],
+    axes: Iterable[str],
+    settings: Settings,
 ) -> list[_Point]:
     """Return the points of one law; raises ValueError, with the place of the point, if a run cannot begin there."""
     points = []
     for (name, state), values in product(states.items(), product(*grid.values())):
         at = dict(zip(grid, values, strict=True))
         place = {key: {"law": base.law.name, "initial": name, **at}[key] for key in axes}
-        model = _call_at(place, base.at, **at)
+        model = _call_at(place, base.at, **at, **kept)
         _call_at(place, settings.check_chain, model.chain)
         begun = _call_at(place, final_state, model, state)[0] if isinstance(state, Trajectory) else state
         if isinstance(begun, ChainState):

@@ -66,12 +66,12 @@ class Chain(Unchanging):
 
     A row has N − 1 springs between neighbours; spring i joins blocks i and i + 1. A ring has N springs; the last one
     joins the last block to the first. A grid of nx × ny blocks has open edges; block 1 + ix + nx·iy is in column ix and
-    row iy, both counted from 0. A file of springs has one line for each spring, `block block strength` or
-    `block block strength damping`, with blocks numbered from 1. Springs by distance join all blocks of a row, a ring (r
-    is the arc) or a grid, `{"distance": "9/r**3", "cut_off": 5}`. A block of mass m and weakening w obeys
-    m U'' = F − threshold · Φ(w U') while it slips, and sticks while F is at most its threshold. The factor w of the
-    speed is a factor of a in every law whose formula has a only in the product a*u. Friction of a block grows with
-    speed if w is negative and Φ falls, and is Coulomb friction if w is 0.
+    row iy, both counted from 0; `coupling` may differ along rows and columns (anisotropic sheets). A file of springs
+    has one line for each spring, `block block strength` or `block block strength damping`, with blocks numbered from 1.
+    Springs by distance, `{"distance": "9/r**3", "cut_off": 5}`, join all blocks of a row, a ring (r is the arc) or a
+    grid. A block of mass m and weakening w obeys m U'' = F − threshold · Φ(w U') while it slips, and sticks while F is
+    at most its threshold. The factor w of the speed is a factor of a in every law whose formula has a only in the
+    product a*u. Friction of a block grows with speed if w is negative and Φ falls, and is Coulomb friction if w is 0.
 
     The force on block i is F_i = s_i + d_i. The spring force is s_i = D_i vτ − (K U)_i, where K is the graph Laplacian
     of the springs plus diag(D), so that K·1 = D. Dashpots (Kelvin-Voigt damping) add
@@ -106,7 +106,8 @@ class Chain(Unchanging):
     coupling: Annotated[
         float | Sequence[float],
         _STRENGTHS,
-        "springs between neighbours: one number for all, or one for each spring of a row or a ring",
+        "springs between neighbours: one number for all, one for each spring of a row or a ring, or two in a grid: "
+        "along rows (x) and columns (y)",
     ] = 1.0
     pulling: Annotated[
         float | Sequence[float] | str,
@@ -132,8 +133,7 @@ class Chain(Unchanging):
     damping: Annotated[
         float | Sequence[float],
         _DAMPING,
-        "dashpots in parallel with the springs between neighbours: one number for all, or one for each spring of a row "
-        "or a ring",
+        "dashpots in parallel with the springs between neighbours: in the form of coupling",
     ] = 0.0
     pulling_damping: Annotated[
         float | Sequence[float], _DAMPING, "dashpots to the driver: one number for all blocks, or one per block"
@@ -163,8 +163,10 @@ class Chain(Unchanging):
                 got, several = f"{len(value)} numbers, expected 1", f"{count}"
                 if len(value) == 1:
                     got, several = "a list of 1 number, expected a number", f"a list of {count}"
-                part = "spring" if key in SPRING_PARAMETERS else "block"
-                raise ValueError(f"chain.{key}: got {got}{f', or {several}: one per {part}' * (count > 1)}")
+                per = "one per block"
+                if key in SPRING_PARAMETERS:
+                    per = "along rows and columns" if self.grid else "one per spring"
+                raise ValueError(f"chain.{key}: got {got}{f', or {several}: {per}' * (count > 1)}")
         if self.blocks == 1 and self.ends == "ring":
             raise ValueError("chain.ends: got ring, expected open for one block")
         if not isinstance(self.pulling, str) and np.max(self.pulling) < STRENGTH.least:
@@ -182,11 +184,8 @@ class Chain(Unchanging):
             raise ValueError(f"chain.ends: got {self.ends}, expected open together with {with_key}")
         for key in ("coupling", "damping"):
             value, usual = getattr(self, key), 1.0 if key == "coupling" else 0.0
-            if isinstance(value, tuple):
-                got = f"{len(value)} numbers" if len(value) != 1 else "a list of 1 number"
-                raise ValueError(f"chain.{key}: got {got}, expected one together with {option}")
             if self.springs and value != usual:
-                raise ValueError(f"chain.{key}: got {value!r}, expected none together with {option}")
+                raise refusal(f"chain.{key}", value, f"none together with {option}")
         if self.grid:
             count = math.prod(self.grid)
             if self.blocks not in (None, count):
@@ -245,15 +244,20 @@ class Chain(Unchanging):
         return "springs" if self.springs != other.springs else "damping" if strength else "coupling"
 
     def parameter_count(self, key: str) -> int:
-        """Return how many values a parameter has: one for each spring of a row or a ring, or one for each block."""
+        """Return how many values a parameter has: one for each block, or for each spring of a row or a ring.
+
+        The springs of a grid have two, along rows and columns; those of other networks have none.
+        """
         if key in BLOCK_PARAMETERS:
             return self.blocks
-        return 0 if self.is_network else self.blocks - (self.ends == "open")
+        if self.is_network:
+            return 0 if self.springs else 2
+        return self.blocks - (self.ends == "open")
 
     def parameter_values(self, key: str) -> np.ndarray:
         """Return the values of a parameter for all springs or all blocks, shape (parameter_count(key),).
 
-        Springs of a row or a ring are in the order of the blocks on their left.
+        Springs of a row or a ring are in the order of the blocks on their left; those of a grid along rows come first.
         """
         return self.driving if key == "pulling" else block_values(getattr(self, key), self.parameter_count(key), key)
 
@@ -312,7 +316,7 @@ class Chain(Unchanging):
             joined = springs_by_distance(str(self.springs), columns, rows, self.ends == "ring", STRENGTH)
             return network_neighbours(*joined, np.zeros(len(joined[0])), self.blocks)
         if self.grid:
-            return grid_neighbours(columns, rows, float(self.coupling), float(self.damping))  # type: ignore[arg-type]
+            return grid_neighbours(columns, rows, *map(self.parameter_values, SPRING_PARAMETERS))
         if self.springs is None:
             return row_neighbours(self.coupling_to_previous, self._shift_to_next(self.damping))
         first, second, strength, damping = read_edges(str(self.springs))

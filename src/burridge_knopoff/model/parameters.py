@@ -2,7 +2,8 @@
 
 They are a and the other parameters of the law, the driver velocity v, and the parameters of the chain, either of all
 its springs or blocks (`mass`) or of one of them (`mass[3]`). Blocks and springs are numbered from 1. Spring i of a row
-or a ring joins blocks i and i + 1; the last spring of a ring joins the last block to the first.
+or a ring joins blocks i and i + 1; the last spring of a ring joins the last block to the first. In a grid,
+`coupling[1]` belongs to all springs along rows, and `coupling[2]` to those along columns.
 """
 
 from __future__ import annotations
@@ -77,8 +78,10 @@ def chain_parameter(chain: Chain, name: str) -> Any:
         return getattr(chain, name)
     key, number = single
     count, of = chain.parameter_count(key), "spring" if key in SPRING_PARAMETERS else "block"
-    if key in SPRING_PARAMETERS and chain.is_network:
+    if key in SPRING_PARAMETERS and chain.springs:
         raise ValueError(f"{name}: got one spring of a network, expected {key}: only rows and rings number springs")
+    if key in SPRING_PARAMETERS and chain.grid:
+        of = "direction"
     if not 1 <= number <= count:
         allowed = f"1 to {count}" if count else "none, as a single block has no neighbour"
         raise ValueError(f"{name}: got {of} {number}, expected {allowed}")

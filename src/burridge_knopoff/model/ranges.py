@@ -175,15 +175,20 @@ class Interval(Range):
 
 @dataclass(eq=False, repr=False)
 class IntervalAtSpeed(Interval):
-    """An interval [low, high], each end a number or a formula of the driver velocity v, such as `v - 2`."""
+    """An interval [low, high], each end a number or a formula of the driver velocity v, such as `v - 2`.
+
+    In its form a formula without v is its value.
+    """
 
     def _fit(self, value: Any, key: str) -> tuple[Any, Any] | None:
         ends = elements(value) or ()
         if len(ends) != 2 or not any(isinstance(end, str) for end in ends):
             return super()._fit(value, key)
-        for place, end in enumerate(ends):
-            self._end_at(end, 1.0, f"{key}[{place}]")
-        low, high = (end if isinstance(end, str) else float(end) for end in ends)
+        numbers = [self._end_at(end, 1.0, f"{key}[{place}]") for place, end in enumerate(ends)]
+        of_v = [isinstance(end, str) and "v" in formula_names(end) for end in ends]
+        if not any(of_v):
+            return super()._fit(numbers, key)
+        low, high = (end if varies else number for end, number, varies in zip(ends, numbers, of_v, strict=True))
         return low, high
 
     def at(self, value: Sequence[float | str], v: float, key: str) -> tuple[float, float]:
@@ -196,8 +201,6 @@ class IntervalAtSpeed(Interval):
             number: float = self.ends.form(end, key)
             return number
         try:
-            if "v" not in formula_names(end):
-                raise FormulaError("this has no v")
             return formula_value(end, {"v": v})
         except FormulaError as error:
             raise refusal(key, end, f"{self.ends} or a formula of v: {error}") from None

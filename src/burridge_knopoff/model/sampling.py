@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 
 from burridge_knopoff.model.initial import COORDINATE, InitialState
+from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.ranges import Interval, IntervalAtSpeed, Number, Whole
 
 #: Default box: (low, high) of all initial positions U_i(0), and of all initial velocities U_i'(0).
@@ -22,6 +23,16 @@ VELOCITY_AT_SPEED = IntervalAtSpeed(COORDINATE)
 SAMPLES = Whole(1, 100_000)
 
 CONFIDENCE = 0.95
+
+
+def velocity_range(value: Sequence[float | str], model: Model, key: str) -> tuple[float, float]:
+    """Return the range (low, high) of velocities of a model, whose ends may be formulas of its v.
+
+    Raises ValueError, one line, if it is none at this v, and for velocities below 0 under one-sided contact.
+    """
+    velocity = VELOCITY_AT_SPEED.at(value, model.v, key)
+    model.check_directions(np.array(velocity), key)
+    return velocity
 
 
 def seed_at(seed: int, a: float) -> list[int]:

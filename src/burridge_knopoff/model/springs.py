@@ -66,12 +66,16 @@ def row_neighbours(strength: np.ndarray, damping: np.ndarray) -> Neighbours:
     return _compress(np.stack([np.roll(block, 1), np.roll(block, -1)], axis=1), *numbers)
 
 
-def grid_neighbours(columns: int, rows: int, strength: float, damping: float) -> Neighbours:
-    """Return the neighbours in a grid with open edges: left, right, down, up; block number is ix + columns * iy."""
+def grid_neighbours(columns: int, rows: int, strength: np.ndarray, damping: np.ndarray) -> Neighbours:
+    """Return the neighbours in a grid with open edges: left, right, down, up; block number is ix + columns * iy.
+
+    strength, damping : of the springs and dashpots along rows and along columns, shape (2,)
+    """
     block = np.arange(columns * rows)
     ix, iy = block % columns, block // columns
     joined = np.stack([ix > 0, ix < columns - 1, iy > 0, iy < rows - 1], axis=1)
-    return _compress(block[:, None] + np.array([-1, 1, -columns, columns]), strength * joined, damping * joined)
+    numbers = (np.repeat(values, 2) * joined for values in (strength, damping))
+    return _compress(block[:, None] + np.array([-1, 1, -columns, columns]), *numbers)
 
 
 def network_neighbours(

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.model.uniform_sliding import eigenvalues
 from burridge_knopoff.motion.section_returns import state_of
 from burridge_knopoff.motion.set_distance import distance
 from burridge_knopoff.periodic_orbits.floquet import unstable_count
@@ -97,7 +98,10 @@ def _orbit_without_stops(model: Model, state: ChainState, window: float) -> Peri
     Raises OrbitError, with the reason, if the motion slides uniformly or is neutral.
     """
     if np.abs(distance_from_sliding(model, state)).max() <= CLOSENESS[0]:
-        raise OrbitError(f"{model.place}: no periodic orbit found: the motion settles on uniform sliding")
+        words = "the motion settles on uniform sliding"
+        if eigenvalues(model).real.max() > 0.0:
+            words = "the state is uniform sliding, which is unstable: start from a displaced state"
+        raise OrbitError(f"{model.place}: no periodic orbit found: {words}")
     for part, accepted in ((PART * window, _is_on_stable_orbit), (window, _is_on_orbit)):
         times, values = velocity_maxima(model, state, 0.0, part)
         if (orbit := orbit_of_events(model, times, values, accepted)) is not None:

@@ -109,7 +109,7 @@ def chain_text(chain: Chain) -> str:
     if chain.springs:
         parts = [f"springs of {chain.springs}"]
     else:
-        parts = [f"coupling {_format_numbers(chain.coupling)}"]
+        parts = [f"coupling {_format_of_springs(chain, chain.coupling)}"]
     parts.append(
         "pulling springs, one per neighbour of the block"
         if chain.pulling == NEIGHBOURS
@@ -120,13 +120,20 @@ def chain_text(chain: Chain) -> str:
         parts.append(f"mass {_format_numbers(chain.mass)}")
     if chain.weakening != 1.0:
         parts.append(f"weakening {_format_numbers(chain.weakening)}")
-    for words, damping in (("neighbours", chain.damping), ("the driver", chain.pulling_damping)):
-        if np.any(damping):
-            parts.append(f"dashpots to {words} {_format_numbers(damping)}")
+    if np.any(chain.damping):
+        parts.append(f"dashpots to neighbours {_format_of_springs(chain, chain.damping)}")
+    if np.any(chain.pulling_damping):
+        parts.append(f"dashpots to the driver {_format_numbers(chain.pulling_damping)}")
     shape = "a ring" if chain.ends == "ring" else "open ends"
     if chain.is_network:
         shape = f"a grid of {chain.grid[0]} × {chain.grid[1]} blocks" if chain.grid else "a network"
     return f"{shape}; {'; '.join(parts)}"
+
+
+def _format_of_springs(chain: Chain, value: Any) -> str:
+    if chain.grid and isinstance(value, tuple):
+        return "{} along rows and {} along columns".format(*map(text, value))
+    return _format_numbers(value)
 
 
 def _format_numbers(value: Any) -> str:
