@@ -11,7 +11,7 @@ import xarray
 from burridge_knopoff.dataset.decoding import decode_flags
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
-from burridge_knopoff.laws import Law, law_of
+from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
@@ -185,7 +185,7 @@ def _fill_curve(
     """Fill in the orbits along the grid for the i-th law."""
     for k, a in enumerate(grid):
         values["status"][i, k] = OrbitStatus.NOT_FOUND if model.blocks == BLOCKS else OrbitStatus.NOT_THREE_BLOCKS
-        if model.blocks == BLOCKS and _is_constant(model.at(a).law):
+        if model.blocks == BLOCKS and _has_constant_friction(model.at(a)):
             values["status"][i, k] = OrbitStatus.NEUTRAL
         if orbits is None or a == 0.0:
             continue
@@ -219,9 +219,11 @@ def modes(orbit: PeriodicOrbit) -> np.ndarray:
     return np.array([spectrum.transverse, returned, *spectrum.symmetry_preserving[:2], 0.0, 0.0], dtype=complex)
 
 
-def _is_constant(law: Law) -> bool:
+def _has_constant_friction(model: Model) -> bool:
     """Return whether friction equals static friction at every speed."""
-    return law.is_linear and law.initial_slope == 0.0 and float(law(0.0)) == 1.0
+    law = model.law
+    is_flat = (law.is_linear and law.initial_slope == 0.0) or not model.chain.weakenings.any()
+    return is_flat and float(law(0.0)) == 1.0
 
 
 def _fill_transition(values: dict[str, Any], i: int, orbits: KnownOrbits | None, asymmetry: np.ndarray) -> None:
