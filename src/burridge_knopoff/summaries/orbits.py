@@ -141,7 +141,7 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
     }
     orbits: dict[str, KnownOrbits | None] = {}
     for i, model in enumerate(models):
-        orbits[laws[i]] = _orbits_of_model(model)
+        orbits[laws[i]] = _orbits_of_model(model.at(a=grid[-1]) if model.law.has_a else model)
         _fill_curve(values, i, model, orbits[laws[i]], grid)
         _fill_transition(values, i, orbits[laws[i]], asymmetry)
     if len(pair) == len(PAPER_LAWS):
@@ -187,7 +187,7 @@ def _fill_curve(
         values["status"][i, k] = OrbitStatus.NOT_FOUND if model.blocks == BLOCKS else OrbitStatus.NOT_THREE_BLOCKS
         if model.blocks == BLOCKS and _has_constant_friction(model.at(a)):
             values["status"][i, k] = OrbitStatus.NEUTRAL
-        if orbits is None or a == 0.0:
+        if orbits is None or (model.law.has_a and a == 0.0):
             continue
         try:
             orbit = orbits.at(a)
@@ -199,6 +199,9 @@ def _fill_curve(
         values["residual"][i, k] = orbit.residual
         values["lateral_slip_time"][i, k] = orbit.period - orbit.stick_time(0)
         values["center_stick_time"][i, k] = orbit.stick_time(1)
+        # Without stops a perturbation of x_1 − x_3 has two multipliers.
+        if not orbit.stop_counts[0]:
+            continue
         try:
             spectrum = modes(orbit)
         except OrbitError as error:
