@@ -73,7 +73,7 @@ def measured() -> dict[str, float]:
         kernel, clouds = new_ensemble(Model(Chain(blocks), law_of(law, a))), Clouds([cloud], 2 * blocks, [RADIUS])
         durations[f"labels, {law}, N = {blocks}, a = {a:g}"] = least(
             lambda k=kernel, c=clouds, x=position, w=velocity: k.label(
-                x, w, np.zeros(x.shape, bool), c, [RETURNS], [0], END
+                x, w, np.zeros(x.shape, bool), c, [RETURNS], [0], [0], END
             )
         )
     for name, kind in BUILT_IN.items():

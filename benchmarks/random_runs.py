@@ -91,7 +91,9 @@ def move_many(model: Model, random: np.random.Generator) -> str:
         return "ensemble"
     points = [random.uniform(-1, 1, (int(random.integers(1, 50)), 2 * blocks)) for _ in range(2)]
     clouds = Clouds(points, 2 * blocks, [0.5, 0.1])
-    ensemble.label(*states, clouds, [2, 3], random.integers(0, blocks, 2).tolist(), 10.0)
+    ensemble.label(
+        *states, clouds, [2, 3], random.integers(0, blocks, 2).tolist(), random.integers(0, 2, 2).tolist(), 10.0
+    )
     return "labels"
 
 
