@@ -23,7 +23,7 @@ SHORT = {
         "Vasconcelos: the onset of slip": 1,
         "Amundsen: the speed of fronts": 1,
     },
-    "tongues.md": {"Parameters of single blocks and springs": 1, "Synchrony: a tongue that ends at grazings": 2},
+    "tongues.md": {"What shows locking": 1},
 }
 
 
