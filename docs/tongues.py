@@ -97,15 +97,13 @@ def branch_one() -> tuple[np.ndarray, np.ndarray]:
 
 
 def print_branch_one(classes: np.ndarray, shares: np.ndarray) -> None:
-    """Print up to which detuning the end blocks have one frequency and a stable relative phase."""
+    """Print up to which detuning the end blocks have a stable relative phase and one frequency, and the least share."""
+    print("   a  phase stable  one frequency  share of one mode")
     for column in range(1, len(VALUES), 3):
         attracts, same = classes[:, column] >= TORUS, classes[:, column] != TWO
         until = DETUNINGS[np.argmin(attracts) - 1] if not attracts.all() else DETUNINGS[-1]
-        print(
-            f"a = {VALUES[column]:.3f}: stable phase up to d = {until:.3f}, "
-            f"one frequency up to {DETUNINGS[same.nonzero()[0][-1]]:.3f}, "
-            f"of which one mode has at least {shares[same, column].min():.3f}"
-        )
+        last, share = DETUNINGS[same.nonzero()[0][-1]], shares[same, column].min()
+        print(f"{VALUES[column]:.3f} {until:11.3f} {last:14.3f} {share:15.3f}")
 
 
 def loss(
