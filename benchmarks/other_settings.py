@@ -2,9 +2,8 @@
 
     python benchmarks/other_settings.py results/paper
 
-For docs/attractors.md the uncertainty exponents from ten times the pairs, their local values at smaller separations,
-and which phases synchronize by how much the inner block oscillates; for docs/bifurcations.md where the orbit with 9, 9
-and 6 stops is born. It takes some minutes.
+For docs/attractors.md the uncertainty exponents from ten times the pairs, and which phases synchronize by how much the
+inner block oscillates; for docs/bifurcations.md where the orbit with 9, 9 and 6 stops is born. It takes some minutes.
 """
 
 from __future__ import annotations
@@ -16,11 +15,8 @@ import numpy as np
 import xarray
 from measure import print_table
 
-from burridge_knopoff.attractors.labels import label_states
 from burridge_knopoff.attractors.settings import SEARCH
 from burridge_knopoff.attractors.stored_returns import KnownAttractors, known_attractors
-from burridge_knopoff.basins.pair_separation import BATCHES, PARTS, follow_pairs
-from burridge_knopoff.basins.plane import states
 from burridge_knopoff.basins.settings import BasinSettings, PhaseSettings
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.kind import MotionKind
@@ -34,8 +30,6 @@ from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries import basins, phases
 
 EXPONENTS_AT, PAIRS = (0.05, 0.08, 0.15), 16_000
-# Separations down to rounding, as parts of the width of the plane, and the numbers of those at which slopes begin.
-SEPARATIONS, SMALLER = tuple(0.1 * PARTS**-k for k in range(23)), (3, 7, 11, 15, 19)
 PHASES_AT, AMPLITUDE = (0.005, 0.05, 0.08), 0.03
 PHASES = PhaseSettings((AMPLITUDE, 0.07), (30.0, 180.0), (0.0, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0), samples=200, seed=5)
 BIRTH_FROM, BIRTH_RANGE, STOPS = 0.17, (0.15, 0.172), (9, 9, 6)
@@ -57,30 +51,6 @@ def exponents(results: Path, study: Study, attractors: xarray.Dataset, a: float)
     ]
     alpha = "; ".join(f"{value:.3f} ± {error:.3f}" for value, error in values)
     return [f"{a:g}", alpha, "; ".join(f"{2.0 - value:.2f}" for value, _ in values)]
-
-
-def local_exponents(results: Path, study: Study, attractors: xarray.Dataset, a: float) -> list[str]:
-    """Return the slope of log f against log ε over a factor of 27 about each of SMALLER, linearized law."""
-    candidates = known_of(results, attractors, study.model("linearized", a))
-    plane = BasinSettings(initial=study.state(study.config["basins"]["initial"]))
-    position, velocity = plane.initial.coordinates(candidates.model.blocks)
-
-    def label(points: np.ndarray) -> np.ndarray:
-        where = states(position, *points.T, velocity)
-        return label_states(candidates.model, candidates.attractors, *where, time_limit=SEARCH.label_limit)[0]
-
-    counts = follow_pairs(label, plane.first_position, plane.last_position, 4000, SEARCH.seed, SEPARATIONS)
-    without = [np.delete(np.arange(BATCHES), k) for k in range(BATCHES)]
-
-    def slopes(batches: np.ndarray) -> np.ndarray:
-        fraction = counts.different_weight[batches].sum(axis=0) / counts.labelled_weight[batches].sum(axis=0)
-        return np.array([np.log(fraction[k] / fraction[k + 3]) / np.log(27.0) for k in SMALLER])
-
-    error = np.sqrt(BATCHES - 1.0) * np.std([slopes(sample) for sample in without], axis=0)
-    return [
-        f"{a:g}",
-        *(f"{slope:.2f} ± {deviation:.2f}" for slope, deviation in zip(slopes(np.arange(BATCHES)), error, strict=True)),
-    ]
 
 
 def born_at(study: Study, attractors: xarray.Dataset) -> float:
@@ -107,10 +77,6 @@ def main() -> None:
     laws = "; ".join(study.laws)
     print_table(
         ["a", f"α ({laws})", "dimension 2 − α"], [exponents(results, study, attractors, a) for a in EXPONENTS_AT]
-    )
-    print_table(
-        ["a", *(f"ε = {SEPARATIONS[k]:.0e} to {SEPARATIONS[k + 3]:.0e}" for k in SMALLER)],
-        [local_exponents(results, study, attractors, a) for a in EXPONENTS_AT],
     )
     model = study.model("linearized", PHASES_AT[0])
     candidates = [known_of(results, attractors, model.at(a)) for a in PHASES_AT]

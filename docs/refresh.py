@@ -1,7 +1,7 @@
 """Update the generated parts of the documentation from the study that `make` runs: `make docs`.
 
-Generated are the ledger of claims in docs/claims.md, the numbers and the headline of the README, the table of branches
-of attractors in docs/attractors.md, the table of costs in docs/performance.md, and the figures of docs/.
+Generated are the ledger of claims in docs/verdicts.md, the numbers and the headline of the README, the table of
+branches of attractors in docs/attractors.md, the table of costs in docs/performance.md, and the figures of docs/.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def headline(ledger: Mapping[str, Any]) -> str:
     """Return the numbers of the paper and of the study, and how many independent statements have each verdict."""
     sentence = (
         f"**{count_sentence(ledger['independent_counts'])}**; {dependent_sentence(ledger)} "
-        "[docs/claims.md](docs/claims.md) lists all of them with their evidence."
+        "[docs/verdicts.md](docs/verdicts.md) lists all of them with their evidence."
     )
     rows = [
         f"| {words} | {paper} | {with_powers_of_ten(ours)} |" for words, paper, ours, _ in compare(ledger["claims"])
@@ -99,7 +99,7 @@ def pages(summary: Path) -> dict[Path, str]:
     with xarray.open_dataset(summary / "attractors.nc") as attractors:
         table = branch_table(attractors)
     return {
-        DOCS / "claims.md": as_markdown(ledger, "figures"),
+        DOCS / "verdicts.md": as_markdown(ledger, "figures"),
         DOCS.parent / "README.md": headline(ledger),
         DOCS / "attractors.md": table,
     }

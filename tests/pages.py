@@ -38,8 +38,8 @@ def blocks(page: str) -> list[Block]:
 
 
 def claim_sections(root: Path) -> dict[str, str]:
-    """Return {name of a claim: its section of docs/claims.md, as one line}."""
-    parts = re.split(r"^#{3,} (.*)$", (root / "docs/claims.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
+    """Return {name of a claim: its section of docs/verdicts.md, as one line}."""
+    parts = re.split(r"^#{3,} (.*)$", (root / "docs/verdicts.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
     sections = dict(zip(parts[1::2], parts[2::2], strict=True))
     return {name: " ".join(text.split()) for name, text in sections.items() if re.fullmatch("[a-z0-9_]+", name)}
 

@@ -15,7 +15,7 @@ SHORT = {
     "model.md": {"Units": 1},
     "attractors.md": {"What lies on the boundaries": 1},
     "chains.md": {"Asperities and barriers": 1},
-    "bifurcations.md": {"Orbits without stops": 1, "Bifurcation curves in two parameters": 2},
+    "bifurcations.md": {"Orbits without stops": 1, "Bifurcation curves in two parameters": 1},
     "continuum.md": {"The size of the blocks, and dashpots that remove most of its effect": 1},
     "published.md": {
         "Huang and Turcotte: two unequal blocks": 2,
@@ -24,7 +24,7 @@ SHORT = {
         "Vasconcelos: the onset of slip": 1,
         "Amundsen: the speed of fronts": 1,
     },
-    "tongues.md": {"Parameters of single blocks and springs": 1, "Synchrony: a tongue that ends at grazings": 2},
+    "tongues.md": {"What shows locking": 1},
 }
 
 

@@ -1,4 +1,4 @@
-"""README: its numbers are those of the ledger in docs/claims.md, and linked files exist."""
+"""README: its numbers are those of the ledger in docs/verdicts.md, and linked files exist."""
 
 import re
 import subprocess

@@ -35,7 +35,7 @@ def words_of(name: str) -> str:
 
 
 @pytest.mark.skipif(not SUMMARY.exists(), reason="the default study has not run")
-@pytest.mark.parametrize("name", ["docs/claims.md", "README.md", "docs/attractors.md"])
+@pytest.mark.parametrize("name", ["docs/verdicts.md", "README.md", "docs/attractors.md"])
 def test_a_page_shows_the_results_of_the_default_study(name: str) -> None:
     claims = json.loads((SUMMARY / "claims.json").read_text(encoding="utf-8"))
     with xarray.open_dataset(SUMMARY / "attractors.nc") as attractors:
@@ -56,7 +56,7 @@ def test_the_ledger_contains_the_present_claims() -> None:
 
 
 def test_the_readme_counts_the_verdicts_of_the_ledger() -> None:
-    counts = re.search(r"Of \d+ independent statements, .*? or follow from them\.", words_of("docs/claims.md"))
+    counts = re.search(r"Of \d+ independent statements, .*? or follow from them\.", words_of("docs/verdicts.md"))
     assert counts
     assert counts[0] in words_of("README.md").replace("**", "")
 
@@ -64,7 +64,8 @@ def test_the_readme_counts_the_verdicts_of_the_ledger() -> None:
 def test_the_depth_is_that_of_the_default_config() -> None:
     config = CONFIG.form(read_config(ROOT / "config/paper.yaml"), "")
     half, refine = 100.0 * config["attractors"]["fraction_width"], config["refine"]
-    depth = re.search(r"Depth of the search for attractors: .*? up to a period of [\d.]+\.", words_of("docs/claims.md"))
+    text = words_of("docs/verdicts.md")
+    depth = re.search(r"Depth of the search for attractors: .*? up to a period of [\d.]+\.", text)
     assert depth
     for words in (f"±{half:g} %", f"within {refine['resolution']:g}", f"period of {refine['longest_period']:g}"):
         assert words in depth[0]
