@@ -91,6 +91,8 @@ style: .venv/kernel .venv/test  ## check style
 		tests/kernel/*.cpp
 	$(BIN)/snakefmt --check Snakefile workflow
 	$(BIN)/snakemake --lint
+	$(BIN)/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/test.yml
+	$(BIN)/check-jsonschema --builtin-schema vendor.citation-file-format CITATION.cff
 
 # The lock files hold the newest versions, oldest.txt the oldest that pyproject.toml allows.
 .venv-oldest/ready: requirements/test.lock requirements/oldest.txt setup.py pyproject.toml $(KERNEL)

@@ -1,14 +1,18 @@
 """Update the generated parts of the documentation from the study that `make` runs: `make docs`.
 
-Generated are the ledger of claims in docs/verdicts.md, the numbers and the headline of the README, the table of
-branches of attractors in docs/attractors.md, the table of costs in docs/performance.md, and the figures of docs/.
+Generated are the ledger of claims in docs/verdicts.md, the numbers, the headline and the pictures of the README, the
+table of branches of attractors in docs/attractors.md, the table of costs in docs/performance.md, and the figures of
+docs/.
 """
 
 from __future__ import annotations
 
+import contextlib
 import json
 import re
+import shutil
 import sys
+import tempfile
 import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -134,6 +138,16 @@ def copy_figure(source: Path) -> None:
     few.save(DOCS / "figures" / source.name, optimize=True)
 
 
+def draw_readme() -> None:
+    """Draw the pictures of the README by its first lines of Python."""
+    code = re.search(r"```python\n(.*?)```", (DOCS.parent / "README.md").read_text(encoding="utf-8"), re.DOTALL)
+    with tempfile.TemporaryDirectory() as folder:
+        with contextlib.chdir(folder):
+            exec(code[1], {})  # type: ignore[index]
+        for picture in Path(folder).glob("*.png"):
+            shutil.copy(picture, DOCS / "figures" / f"readme_{picture.name}")
+
+
 def main(results: Path) -> None:
     """Update the pages and the figures from the results of a study."""
     for path, block in pages(results / "summary").items():
@@ -143,6 +157,7 @@ def main(results: Path) -> None:
     for name in sorted(figure_names()):
         if (source := results / f"figures/{name}.png").exists():
             copy_figure(source)
+    draw_readme()
 
 
 if __name__ == "__main__":

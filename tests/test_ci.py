@@ -4,7 +4,10 @@ import os
 import re
 import subprocess
 import sysconfig
+import tomllib
 from pathlib import Path
+
+import yaml
 
 from tests.optional import SETTINGS
 
@@ -23,3 +26,12 @@ def test_the_tests_run_with_nothing_but_what_the_readme_names(repository, tmp_pa
     target, programs = run.stdout.splitlines()
     assert target == "test-all"
     assert set(programs.split()) == names | {compiler}, run.stderr
+
+
+def test_the_workflow_tests_the_oldest_and_the_newest_python(repository):
+    jobs = yaml.safe_load((repository / ".github/workflows/test.yml").read_text())["jobs"]
+    project = tomllib.loads((repository / "pyproject.toml").read_text())["project"]
+    versions = [name.rpartition(" ")[2] for name in project["classifiers"] if "Python :: 3." in name]
+    assert jobs["test"]["strategy"]["matrix"]["python"] == [versions[0], versions[-1]]
+    assert project["requires-python"] == f">={versions[0]}"
+    assert jobs["test"]["steps"][-1]["run"] == "make test"

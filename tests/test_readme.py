@@ -6,13 +6,11 @@ import sys
 
 import numpy as np
 import pytest
-import xarray
 from matplotlib.image import imread
 
 from burridge_knopoff import Chain, Model, law_of, multipliers, simulate, synchronized_orbit
-from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.running.settling import LEVELS
-from tests.pages import claim_sections
+from tests.pages import claim_sections, outputs
 
 #: Row of the table, claim, and the beginnings of its numbers.
 NUMBERS = [
@@ -61,27 +59,6 @@ def test_the_distance_from_minus_vanishes_in_a_run(repository):
     assert f"from {settled:.2f} on" in line
 
 
-def test_the_laws_agree_as_often_as_the_study_says(repository):
-    """Of ⟨J⟩ and kinds below a = 0.1, from agreement.nc of the default study."""
-    path = repository / "results/paper/summary/agreement.nc"
-    if not path.exists():
-        pytest.skip("the default study has not run")
-    agrees = xarray.load_dataset(path)["agrees"].sel(other_law="nonlinear")
-    agrees = agrees.where((agrees["a"] > 0.0) & (agrees["a"] < 0.1), drop=True)
-    minus, plus = (int((agrees.sel(initial=name) == Answer.YES).sum()) for name in ("minus", "plus"))
-    text = " ".join((repository / "README.md").read_text(encoding="utf-8").split())
-    assert f"{minus} of the {agrees.sizes['a']} values of a below 0.1 from `minus`" in text
-    assert f"and at {plus} from `plus`" in text
-
-
-def test_plus_synchronizes_as_often_as_the_ledger_says(repository, claims):
-    reason = claims["plus_does_not_synchronize"]
-    shares = re.findall(r"([\d.]+) % \((?:non)?linear", reason)[:2]
-    text = " ".join((repository / "README.md").read_text(encoding="utf-8").split())
-    ours = "at {:.0f} % (linearized law) and {:.0f} % (nonlinear law) of the values of a from 0.005 to 0.08"
-    assert ours.format(*(100 - float(share) for share in shares)) in text
-
-
 @pytest.mark.slow
 def test_the_time_of_the_study_is_that_of_a_dry_run(repository, tmp_path):
     command = [sys.executable, "-m", "snakemake", "-n", "-c2", "--snakefile", "Snakefile", "-d", str(tmp_path / "new")]
@@ -93,14 +70,14 @@ def test_the_time_of_the_study_is_that_of_a_dry_run(repository, tmp_path):
         assert f"{minutes} minutes on two cores" in text
 
 
-def test_the_map_of_basins_is_drawn_by_the_first_lines_of_python(repository, tmp_path, monkeypatch):
-    text = (repository / "README.md").read_text(encoding="utf-8")
-    lines = re.findall(r"^>>> (.*)$", re.search(r"```python\n(.*?)```", text, re.DOTALL)[1], re.MULTILINE)
+def test_the_first_lines_of_python_print_and_draw_what_the_page_shows(repository, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    exec("\n".join(lines), {})
-    mine, committed = (imread(path) for path in ("basins.png", repository / "docs/figures/tutorial_basins.png"))
-    assert mine.shape == committed.shape
-    assert np.abs(mine - committed).mean() < 0.001
+    [(_, expected, printed)] = outputs((repository / "README.md").read_text(encoding="utf-8"), "README.md")
+    assert printed == expected
+    for name in ("run.png", "basins.png"):
+        mine, committed = (imread(path) for path in (name, repository / f"docs/figures/readme_{name}"))
+        assert mine.shape == committed.shape
+        assert np.abs(mine - committed).mean() < 0.001
 
 
 def test_pictures_and_linked_files_exist(repository):
