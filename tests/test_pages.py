@@ -14,6 +14,7 @@ pytestmark = pytest.mark.slow
 SHORT = {
     "model.md": {"Units": 1},
     "attractors.md": {"What lies on the boundaries": 1},
+    "chains.md": {"Asperities and barriers": 1},
     "bifurcations.md": {"Orbits without stops": 1, "Bifurcation curves in two parameters": 2},
     "continuum.md": {"The size of the blocks, and dashpots that remove most of its effect": 1},
     "published.md": {
