@@ -318,7 +318,7 @@ def test_leftovers_of_an_omitted_stage_are_recognized(results, tmp_path, stage, 
 
 
 def test_the_data_dictionary_names_every_variable(results, repository):
-    words = set(re.findall(r"`(\w+)`", (repository / "docs" / "data.md").read_text()))
+    words = set(re.findall(r"`(\w+)`", (repository / "docs" / "variables.md").read_text()))
     files = [*results.glob("summary/*.nc"), results / "points" / "linearized" / "plus" / "a0.0800.nc"]
     assert len(files) >= 8
     for path in files:

@@ -1,6 +1,8 @@
 """The section returns of the attractors of one law in a netCDF file, for labelling states without a new search.
 
 The file has a row for each attractor at each a of the grid, and its returns in a CF contiguous ragged array.
+
+Maps of basins and of phases label states by these returns.
 """
 
 from __future__ import annotations

@@ -1,4 +1,10 @@
-"""Catalogue files: the netCDF form of the slip events of a run, one row per event."""
+"""Catalogue files: the netCDF form of the slip events of a run, one row per event.
+
+The events are in the order of their beginnings. In a ring `first_block` exceeds `last_block` if the event spans the
+seam. `slip_block`, `slip_distance` and `slip_onset` exist with `profiles`, as a CF contiguous ragged array with
+`blocks` entries for each event. The attributes `begin_time` and `end_time` are those of the catalogue on the loading
+clock; in a run that did not complete the variable `end_time` is earlier.
+"""
 
 from __future__ import annotations
 

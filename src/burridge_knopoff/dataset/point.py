@@ -1,7 +1,8 @@
 """Point files: the netCDF form of a trajectory, with all names, attributes and encodings of its variables.
 
-docs/data.md is the data dictionary. Writing needs netCDF4 only, so that a point job starts fast; the same table
-describes the xarray Dataset of `to_dataset`.
+All events are `earlier_event_*`, stored without the states of the blocks, followed by `event_*`, stored with them; the
+setting `events` decides how many. At an event the velocity of its block is exactly 0. If the period of an orbit divides
+a batch, the batch means are too similar, and `mean_distance_error` leaves out the incomplete last period.
 """
 
 from __future__ import annotations
@@ -34,6 +35,7 @@ from burridge_knopoff.running.settling import LEVELS, ROUNDING_UNITS
 from burridge_knopoff.running.status import STATUS_WORDS, Status
 from burridge_knopoff.running.trajectory import Trajectory
 
+# Writing needs netCDF4 only, so that a point job starts fast; `to_dataset` imports xarray.
 if TYPE_CHECKING:
     import xarray
 

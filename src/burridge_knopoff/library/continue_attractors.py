@@ -60,9 +60,9 @@ def continue_attractors(
     progress : True for a bar, in a terminal or a notebook, if rich or tqdm is installed; "always" for one in a pipe too
 
     The attractors at each value are searched for from initial states, and from the attractors at the neighbouring
-    values. The Dataset has the variables of `attractors.nc` and `bifurcations.nc` (docs/data.md), with the parameter
-    in place of a, that of `mass[3]` as `mass_3`, in ascending order: over it and the slot `attractor`, among them
-    `branch`, `side`, `kind`, `mean_distance` and `basin_fraction`, with its interval; and over `bifurcation`, the
+    values. The Dataset has the variables of `attractors.nc` and `bifurcations.nc` (docs/variables.md), with the
+    parameter in place of a, that of `mass[3]` as `mass_3`, in ascending order: over it and the slot `attractor`, among
+    them `branch`, `side`, `kind`, `mean_distance` and `basin_fraction`, with its interval; and over `bifurcation`, the
     changes of the branches, each between `grid_low` and `grid_high`. Branches are matched by the distance of their
     returns at neighbouring values, and for different v also by the distance relative to v. The states of the basin
     fractions are the same at all values of a parameter other than a. Raises ValueError, one line, for a wrong argument.

@@ -35,7 +35,7 @@ def open_study(results: str | Path) -> StudyResults:
     `xarray.DataTree` with one Dataset, whose arrays are read on demand. Zeros at the end of a value may be left out.
     `study["summary"]`, `study["points/<law>"]` and so on are trees of all files in a group, and `study["/"]` contains
     everything. The paths of all files are the keys of the mapping `study`;
-    `study.config` is the config with all defaults. docs/data.md describes all variables.
+    `study.config` is the config with all defaults. docs/variables.md describes all variables.
 
     `study.points()` is one Dataset of all points over (law, initial, a), or over all parameters of the study's `grid`
     in place of a, with the variables that have the same size in every run; `study["points"]` also has events and

@@ -109,7 +109,7 @@ def sweep(
     progress : True for a bar, in a terminal or a notebook, if rich or tqdm is installed; "always" for one in a pipe too
 
     Each list is a dimension of the Dataset: law, initial, a, then the other parameters in the order given; that of
-    `mass[3]` is `mass_3`. The variables are those of a point file (docs/data.md) with one value per run, batch, block,
+    `mass[3]` is `mass_3`. The variables are those of a point (docs/variables.md) with one value per run, batch, block,
     exponent or level of J, among them `mean_distance`, `mean_distance_error`, `lyapunov_exponent` and `status`, which
     is 0 for a completed run; and the `kind` of motion in the window with its `period` (see `MotionKind` and
     `decode_flags`). The series of a run are left out, since `simulate` returns them: the variables over `sample`,

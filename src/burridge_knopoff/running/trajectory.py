@@ -33,8 +33,8 @@ class Trajectory:
     (samples,); `event_time`, `event_block`, `event_kind` (events,), `event_position`, `event_velocity` (events,
     blocks), and likewise `earlier_event_…` for events without states; `crossing_…` (crossings,); `trajectory_time`
     (times,), `position`, `velocity` (times, blocks); `lyapunov_exponent` and its error (exponents,). The first
-    dimension of `batch_…` is the batch. docs/data.md describes each array. Averages and settling times are NaN unless
-    `status` is completed. Lyapunov exponents are also NaN where perturbations have no linear growth;
+    dimension of `batch_…` is the batch. docs/variables.md describes each array. Averages and settling times are NaN
+    unless `status` is completed. Lyapunov exponents are also NaN where perturbations have no linear growth;
     `missing_derivative` then says why, and is empty otherwise.
 
     >>> from burridge_knopoff import simulate

@@ -1,4 +1,10 @@
-"""Agreement of each friction law of a study with the first one, for each initial state and a."""
+"""Agreement of each friction law of a study with the first one, for each initial state and a.
+
+The laws agree if the kind of motion is the same and ⟨J⟩ differs by no more than a tolerance. Periodic and quasiperiodic
+motion count as one kind, since a torus is locked to periodic orbits on a dense set of a. If ⟨J⟩ differs by more, the
+laws disagree, whatever the kinds. The answer is undetermined if a run did not complete, if its kind is undetermined, or
+if the difference of ⟨J⟩ equals the tolerance within its error. Two events within 1e-9 may occur in either order.
+"""
 
 from __future__ import annotations
 

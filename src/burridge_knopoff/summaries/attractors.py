@@ -2,6 +2,11 @@
 
 The file also has the branches of the attractors and the branch that each initial state reaches. `refined` has the
 attractors at the inserted values of a as well.
+
+Each slot `attractor` has one attractor, in the order of branches. `basin_fraction` refers to `sample_count` states,
+drawn independently at each a. `rounded_branch` has 64 states, which round to the initial state at the paper's digits.
+Sweeps start on each attractor of the smallest a (upward) or of the largest a (downward). `section_count` and the other
+observables that are given for some attractors only are those of a run of 1000 time units.
 """
 
 from __future__ import annotations

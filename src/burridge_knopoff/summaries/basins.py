@@ -1,4 +1,16 @@
-"""Maps of basins of attraction: the attractor that each state of a plane reaches, and the uncertainty exponent."""
+"""Maps of basins of attraction: the attractor that each state of a plane reaches, and the uncertainty exponent.
+
+A map is a plane of initial states; the components that are the same in all of them are the attributes `plane_position`
+and `plane_velocity`, those of the first map. The map of one block is the plane of U_1(0) and U_1'(0), with
+`first_velocity` in place of `last_position`.
+
+The uncertainty exponent α of f ∝ ε^α is fitted to all separations ε from the fifth on, a range of a factor of 6561; a
+boundary of dimension D has α = 2 − D. Near boundaries more pairs are examined, and each counts in f with its weight, so
+that f is not the ratio of `uncertain_count` and `pair_count`. `exponent_kind` is *unknown* if fewer than four
+separations have eight differing pairs in more than one batch, and *varying* if the local exponent changes by more than
+0.3 and three standard errors. Errors are from a jackknife over 20 independent batches of pairs; the error of α includes
+half the change of the local exponent, as far as two standard errors do not explain it.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
 """All section points W' at W = 0 over a: the paper's Figs. 4a and 4b. The config's `section` defines W.
 
-The file is a contiguous ragged array of the CF conventions.
+The file is a contiguous ragged array of the CF conventions; `section_points` returns the points of one law, initial
+state and direction.
 """
 
 from __future__ import annotations

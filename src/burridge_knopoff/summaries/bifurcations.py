@@ -3,6 +3,13 @@
 An attractor that is a periodic orbit is continued in a to where it loses its stability or ends; this locates the
 bifurcation to 1e-10. A bifurcation without a periodic orbit on either side is only known to lie between two values of
 a.
+
+Laws follow one another, each with a ascending. `a_error` is a power of ten; without a periodic orbit it is half the
+distance of the two values of a. If an attractor was not found again where it exists, the bifurcation lies up to one
+step of the grid outside. `change` is *change* if the kind of motion, the symmetry or the orbit changes, and *passed* if
+the orbits stay stable but their stops change. Where multipliers jump, `multiplier_beyond` differs from `multiplier`;
+both have five digits and a nonnegative imaginary part. Where a doubled orbit ends at a period doubling, `period` and
+`stops` are those of the doubled orbit, and the multiplier −1 is that of the single one.
 """
 
 from __future__ import annotations

@@ -2,6 +2,9 @@
 
 Each value of a has its own run, whose catalogue file has all events. Rates are NaN for runs that did not complete.
 Standard errors are those of batch means: see `catalogue.batches`.
+
+Bins are 0.5 wide, in the magnitude and in the natural logarithm of the interval. The last 3000 events of each run are
+listed. On a grid or network the blocks of an event are known only with `profiles`.
 """
 
 from __future__ import annotations

@@ -1,6 +1,10 @@
 """The fraction of sampled initial states that synchronize, over a and the number of blocks.
 
 A chain file has the results of `motion.chain_synchronization` for one number of blocks; the summary collects all.
+
+Blocks i and j = N + 1 − i are mirror blocks at the distance sqrt((U_i' − U_j')² + (U_i − U_j)²); the mirror distance is
+the largest of these. Symmetric motion is nearby if it is below 0.01. `lyapunov_exponent` is taken in the second half of
+the time limit.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""The edge states of a study, on the boundaries between basins: at each a, continued in a, and at crises."""
+"""The edge states of a study, on the boundaries between basins: at each a, continued in a, and at crises.
+
+Laws follow one another, each with a ascending.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,10 @@
 """Lyapunov exponents over (law, initial, a), or the study's parameters in place of a, and the kind of motion.
 
 The kind follows from the exponents, the repetition of the state, and ⟨J⟩.
+
+A run from a symmetric state may stay on an unstable orbit (`unstable`). On an orbit that is its own mirror image, W'
+alone may repeat after half of `section_period`. The thresholds are attributes; in a study of several parameters they
+scale with the v of each point.
 """
 
 from __future__ import annotations

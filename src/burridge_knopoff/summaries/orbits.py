@@ -1,4 +1,10 @@
-"""The synchronized orbit over (law, a), its loss of stability, the branching orbits, and a comparison of the laws."""
+"""The synchronized orbit over (law, a), its loss of stability, the branching orbits, and a comparison of the laws.
+
+`multiplier` has six modes: the transverse one; the flow, whose multiplier 1 is computed as a check; two of
+mirror-symmetric perturbations, the larger modulus first, the second 0 to rounding if all blocks stick at once; and two
+that are 0 because blocks 1 and 3 stop. `branch_multiplier` leaves out the flow. The power law of the amplitude is
+fitted to asymmetries up to v/100, with the next order in a − a_c.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,10 @@
 """The attractors reached from initial phases, over (law, a, inner share, amplitude, phase difference).
 
 See `basins.initial_phases` for the initial states.
+
+Phases are in degrees, uniform in [0, 360). They are the same under each law and with each `inner_share`, and different
+at each a. `slipping_amplitude` is v/ω, or v/(share·ω_i) of an inner block if that is smaller. The correlation is taken
+over 1000 time units.
 """
 
 from __future__ import annotations

@@ -2,6 +2,10 @@
 
 Each law has its own values. The file has the variables of `attractors` over (law, value, attractor), and a over
 (law, value); see `continuation.attractor_continuation`.
+
+Values are inserted where neighbouring values of the grid differ in their attractors, or in the kind, period or symmetry
+of one, until each change is located to within `refine_resolution`. An inserted value has only the attractors that
+change nearby; branches that exist only at such values have the last numbers.
 """
 
 from __future__ import annotations

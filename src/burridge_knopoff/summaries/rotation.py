@@ -5,6 +5,11 @@ number of branch 1 (`motion.rotation`), at all values of `refined`, shows whethe
 middle block. To show whether end blocks are locked to each other, the mirror symmetry that makes their frequencies
 equal is broken by changing the mass of the last block (`summaries.detuning`), at the values of the grid; their
 frequencies, the Lyapunov exponents and the shares of the normal modes then decide.
+
+The rotation number counts the turns of (x_1 − x_N, U_1' − U_N') for each turn of (x_m, U_m' − v), m being the middle
+block or the sum over both middle blocks, as a weighted average over `duration`. After detuning, the exponents are taken
+over `detuned_window` after `detuned_transient`, the frequencies and modes over the following `detuned_window`. Each
+detuning begins where the one before ended.
 """
 
 from __future__ import annotations

@@ -1,4 +1,8 @@
-"""Stick-slip cycles over (law, initial, a): rate and duration of sticks, and correlation of the velocities."""
+"""Stick-slip cycles over (law, initial, a): rate and duration of sticks, and correlation of the velocities.
+
+Frequencies and correlations refer to the motion between the first stop and the last event with states, which is
+recomputed, or to the stored trajectory if that is longer.
+"""
 
 from __future__ import annotations
 

@@ -6,6 +6,7 @@ first state.
 
 The verdict is that of `agreement`: the laws agree if the kind of motion is the same and ⟨J⟩ differs by no more than a
 tolerance. Both refer to the asymptotic motion of each state, whereas the order of events refers to runs from the state.
+If the difference has no error, `margin` is −∞.
 """
 
 from __future__ import annotations
