@@ -15,13 +15,13 @@ SHORT = {
     "model.md": {"Units": 1},
     "attractors.md": {"What lies on the boundaries": 1},
     "bifurcations.md": {"Orbits without stops": 1, "Bifurcation curves in two parameters": 2},
-    "continuum.md": {"The size of the blocks, and dashpots that remove most of its effect": 1},
     "published.md": {
-        "Huang and Turcotte: two unequal blocks": 2,
+        "Huang and Turcotte: two unequal blocks": 1,
         "De Sousa Vieira: chaos of equal blocks": 1,
-        "One block on a belt": 1,
+        "Stender and Hoffmann: one block on a belt": 1,
         "Vasconcelos: the onset of slip": 1,
         "Amundsen: the speed of fronts": 1,
+        "Rice, Myers, Langer and Shaw: the size of the blocks": 1,
     },
     "tongues.md": {"Parameters of single blocks and springs": 1, "Synchrony: a tongue that ends at grazings": 2},
 }
