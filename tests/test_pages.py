@@ -23,6 +23,7 @@ SHORT = {
         "Amundsen: the speed of fronts": 1,
         "Rice, Myers, Langer and Shaw: the size of the blocks": 1,
     },
+    "studies.md": {"Asperities and barriers": 1},
     "tongues.md": {"Parameters of single blocks and springs": 1, "Synchrony: a tongue that ends at grazings": 2},
 }
 
@@ -40,3 +41,11 @@ def test_short_sections(repository, tmp_path, monkeypatch, page):
         mine, committed = (imread(picture) for picture in (path, repository / "docs" / "figures" / path.name))
         assert mine.shape == committed.shape
         assert np.abs(mine - committed).mean() < 0.001
+
+
+def test_chains_of_the_default_study(repository, monkeypatch):
+    if not (repository / "results/paper/summary/chains.nc").exists():
+        pytest.skip("the target `chains` of the default study has not run")
+    monkeypatch.chdir(repository)
+    [(_, expected, printed)] = outputs((repository / "docs/studies.md").read_text(), "studies.md", {"Longer chains"})
+    assert printed == expected
