@@ -28,7 +28,9 @@ from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.running.trajectory import Trajectory
 
 #: The scalar coordinates of a run of the paper's chain under its own laws.
-SCALARS = "law initial coupling threshold mass damping pulling_damping a v"
+SCALARS = "law initial coupling threshold mass damping pulling_damping weakening a v"
+#: The scalars of the chain by default.
+USUAL = {"coupling": 1.0, "threshold": 1.0, "mass": 1.0, "damping": 0.0, "pulling_damping": 0.0, "weakening": 1.0}
 
 
 @pytest.fixture(scope="module")
@@ -72,18 +74,18 @@ def test_the_file_and_the_dataset_have_the_same_content(trajectory, path):
 @pytest.mark.parametrize(
     ("law", "chain", "numbers"),
     [
-        ({}, {}, {"coupling": 1.0, "threshold": 1.0, "mass": 1.0, "damping": 0.0, "pulling_damping": 0.0}),
+        ({}, {}, USUAL),
         (
             {"law": "stribeck", "sigma": 0.3},
             {"coupling": (1.0, 1.1), "pulling": 0.5, "mass": 1.2, "damping": 0.1},
             {"sigma": 0.3, "eta": 0.2, "pulling": 0.5, "threshold": 1.0, "mass": 1.2}
-            | {"damping": 0.1, "pulling_damping": 0.0},
+            | {"damping": 0.1, "pulling_damping": 0.0, "weakening": 1.0},
         ),
         # These names have other meanings in a file.
         (
             {"formula": "1 - a*u + 0*(event + time + initial + mass)", "event": 1, "time": 2, "initial": 3, "mass": 4},
             {"threshold": {"random": "uniform", "low": 0.9, "high": 1.1, "seed": 1}},
-            {"coupling": 1.0, "mass": 1.0, "damping": 0.0, "pulling_damping": 0.0},
+            {name: value for name, value in USUAL.items() if name != "threshold"},
         ),
     ],
 )

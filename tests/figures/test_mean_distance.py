@@ -56,6 +56,15 @@ def test_runs_alone_where_attractors_are_left_out():
     assert np.array_equal(panels[0].get_lines()[0].get_ydata(), WITH_A_GAP[0, 0], equal_nan=True)
 
 
+def test_a_panel_without_any_distance_says_so(attractors):
+    """One block, or end blocks that move as one from the start; not where an attractor has a distance."""
+    words = "$J = 0$ at all times"
+    texts = [[text.get_text() for text in panel.texts] for panel in draw(means(np.zeros((2, 1, 3)))).axes]
+    assert all(words in text for text in texts)
+    with_attractors = draw(means(np.zeros((2, 1, 3))), attractors=attractors).axes
+    assert not any(text.get_text() == words for panel in with_attractors for text in panel.texts)
+
+
 def test_constant_friction_is_named_where_runs_have_it(attractors):
     runs = means(WITH_A_GAP)
     for others in (None, attractors):

@@ -5,6 +5,7 @@ import pytest
 
 from burridge_knopoff import (
     Chain,
+    ChainState,
     FormulaLaw,
     InitialState,
     Model,
@@ -15,7 +16,7 @@ from burridge_knopoff import (
     synchronized_orbit,
 )
 from burridge_knopoff.running.kernel_model import creep_speed
-from tests.flows import differences, directions
+from tests.flows import carry, differences, directions
 from tests.refused import refused
 from tests.scipy_flow import model_events
 
@@ -86,6 +87,15 @@ def test_an_orbit_of_blocks_that_weaken_and_strengthen():
     expected, _ = differences(orbit.model, orbit.reference, orbit.period, 1e-4)
     free = directions(orbit.reference).any(axis=0)
     assert orbit.monodromy[:, free] == pytest.approx(expected[:, free], abs=1e-6)
+
+
+def test_perturbations_where_friction_grows_exponentially():
+    """Against finite differences, also from a speed at which the friction of the second block is ten thresholds."""
+    model = Model(Chain(3, weakening=(1.0, -1.0, 0.5)), FormulaLaw(2.0, "0.95*exp(-a*u)"))
+    start = ChainState(np.array([0.3, -0.2, 0.1]), np.array([0.1, 1.2, 0.3]), np.zeros(3, dtype=bool))
+    perturbations = carry(model, start, 3.0, directions(start))[0].perturbations
+    expected, _ = differences(model, start, 3.0, 1e-4)
+    assert perturbations == pytest.approx(expected, abs=1e-6)
 
 
 def test_a_sweep_over_the_weakening_of_one_block():

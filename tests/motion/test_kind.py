@@ -149,8 +149,8 @@ def test_kinds(mean_distance, period, exponents, error, kind):
 
 def motion_with(mean_distance, period, exponents, error, settings=MOTION, points=2000):
     """Return the motion of a run with section points at τ = 0, 1, … and without events."""
-    random = np.random.default_rng(3).random(period or points)
-    run = run_of(np.resize(random, points), np.zeros((points, 3)), first_event=np.inf)
+    turn = 1.0 + 0.1 * np.sin(np.sqrt(2.0) * np.arange(period or points))
+    run = run_of(np.resize(turn, points), np.zeros((points, 3)), first_event=np.inf)
     exponents = np.array(exponents, dtype=float)
     run |= {"lyapunov_exponent": exponents, "lyapunov_error": np.broadcast_to(error, len(exponents))}
     return motion_of_completed_run(run, mean_distance, settings)

@@ -58,7 +58,7 @@ def page(html):
 
 def test_what_is_missing_is_said_in_a_line(page):
     for line in (
-        "No synchronized orbit was computed",
+        "No loss of stability of a synchronized orbit was found",
         "This study has no maps of basins.",
         "W never crosses 0 upward: the section is never reached in any run.",
         "The results folder has no benchmark files of Snakemake.",

@@ -178,7 +178,7 @@ def test_the_range_of_section_points():
     points = {name: ("point", values) for name, values in (("law", ["l", "l"]), ("initial", ["minus", "plus"]))}
     data = of_module(
         bifurcation_diagram,
-        {**points, "a": ("point", [0.1, 0.1])},
+        {**points, "a": ("point", [0.1, 0.2])},
         crossing_velocity=[0.2, -0.3, 0.25, -0.1],
         crossing_direction=[1, -1, 1, -1],
         crossing_count=[3, 1],

@@ -36,6 +36,8 @@ def folder(tmp_path, monkeypatch):
         ({"springs": "faults.txt", "mass": [1, 2, 1]}, 3),
         ({"springs": "faults.txt", "blocks": 4, "pulling": 1}, 4),
         ({"blocks": 5, "ends": "ring", "mass": 2}, 5),
+        ({"blocks": 3, "weakening": [1, -0.5, 1]}, 3),
+        ({"blocks": 4, "weakening": {**UNIFORM, "low": -0.5}}, 4),
         ({"blocks": 10_000, "coupling": 100, "pulling": 1}, 10_000),
     ],
 )

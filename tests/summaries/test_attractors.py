@@ -155,7 +155,7 @@ def test_branches_are_named_by_symmetry_and_sticks():
         "synchronized",
         "alternating, block 2 never sticks (1)",
         "mirror pair (2)",
-        "mirror pair, block 1, 3 never sticks (3)",
+        "mirror pair, blocks 1, 3 never stick (3)",
         "motion (4)",
     ]
 

@@ -5,7 +5,7 @@ import pytest
 
 from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, Settings, law_of, simulate
 from burridge_knopoff.study.paper import PAPER_LAWS
-from burridge_knopoff.summaries.equilibrium import eigenvalues, simulate_sliding, sliding_position, summarize
+from burridge_knopoff.summaries.equilibrium import digest, eigenvalues, simulate_sliding, sliding_position, summarize
 
 MODELS = [Model(Chain(3), law_of(law, 0.0)) for law in PAPER_LAWS]
 
@@ -177,3 +177,13 @@ def test_the_energy_about_sliding_grows_until_a_block_stops(law):
             "ti,ij,tj->t", position, model.chain.stiffness, position
         )
         assert (np.diff(energy) > 0.0).all()
+
+
+def test_a_single_value_of_a_is_not_named():
+    """A law without a has one; its growth rate is half the slope less the damping, (exp(−2) − 0.1)/2."""
+    law = law_of("belt", 0.0, formula="mud + (mus - mud)*exp(-u/v0)", mus=1.0, mud=0.5, v0=0.5)
+    model = Model(Chain(3, pulling=1.0, pulling_damping=0.1), law, 1.0)
+    rate = 0.5 * (np.exp(-2.0) - 0.1)
+    assert digest(summarize([model], [0.0])) == (
+        f"belt: perturbations of uniform sliding grow in every case; the largest growth rate is {rate:.4g}"
+    )

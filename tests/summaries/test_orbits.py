@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import curve_fit
 
-from burridge_knopoff import Chain, FormulaLaw, Model, Symmetry, law_of, multipliers
+from burridge_knopoff import Chain, FormulaLaw, Model, Symmetry, law_of, multipliers, simulate
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
@@ -204,3 +204,16 @@ def test_orbits_that_branch_off_where_synchrony_is_unstable_are_supercritical(c,
     assert values["branch_multiplier"][0] == pytest.approx(1.0 - 2.0 * c * square, abs=1e-7)
     assert values["amplitude_exponent"][0] == pytest.approx(0.5)
     assert values["amplitude_coefficient"][0] == pytest.approx(2.0)
+
+
+def test_the_orbit_of_a_law_without_a_and_one_without_stops():
+    """Runs have their periods; without stops a perturbation of x_1 − x_3 has two multipliers, and none is listed."""
+    belt = law_of("belt", 0.0, formula="mud + (mus - mud)*exp(-u/v0)", mus=1.0, mud=0.5, v0=0.5)
+    cubic = law_of("cubic", 0.3, formula="1 - a*u + b*u**3", b=0.3)
+    state = {"position": [-0.9, -1.0, -0.9], "velocity": [0.7, 0.72, 0.7]}
+    for law, grid, v, listed in ((belt, [0.0], 1.0, [True]), (cubic, [0.5, 0.6], 0.7, [False, True])):
+        model = Model(Chain(3), law, v)
+        part = summarize([model], grid)
+        periods = [simulate(model.at(a=a) if law.has_a else model, initial=state).period for a in grid]
+        np.testing.assert_allclose(part["period"].values[0], periods, rtol=1e-8)
+        assert np.isfinite(part["transverse_multiplier"].values[0]).tolist() == listed

@@ -139,7 +139,8 @@ class Convergence:
         if section.section == ReturnSection.SLIDING:
             return None
         closed, window = section.has_periodic_spacing(self.tolerance), self.measuring_window(section)
-        motion = self.classifier(settings.transient, window).measure(section.state())
+        settled = section if section.window > window else None
+        motion = replace(self.classifier(settings.transient, window), settled=settled).measure(section.state())
         if motion is None:
             return None
         if motion.left_for is not None:

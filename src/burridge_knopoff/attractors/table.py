@@ -190,7 +190,11 @@ def name_branches(
             Symmetry(kinds[counts.argmax()]), "mirror pair" if (slots.sum(axis=-1) > 1).any() else "motion"
         )
         never = np.flatnonzero(~(stop_rate[slots] > 0.0).any(axis=0)) + 1
-        blocks = "no block" if len(never) == stop_rate.shape[-1] else f"block {', '.join(map(str, never))} never"
-        sliding = f", {blocks} sticks" if len(never) else ""
+        numbers_of_blocks = ", ".join(map(str, never))
+        sliding = {
+            0: "",
+            1: f", block {numbers_of_blocks} never sticks",
+            stop_rate.shape[-1]: ", no block sticks",
+        }.get(len(never), f", blocks {numbers_of_blocks} never stick")
         names.append(f"{name}{sliding}{f' ({number})' if number else ''}")
     return {"branch_number": numbers, "branch_name": np.array(names, dtype=object)}

@@ -107,8 +107,13 @@ def _lifetime(table: xarray.Dataset, change: BranchChange) -> tuple[float, float
 
 
 def _kind_without_orbit(change: BranchChange, kind: np.ndarray) -> BifurcationKind:
-    """Return the kind of a bifurcation without a periodic orbit: a crisis if there is chaos on every known side."""
+    """Return the kind of a bifurcation without a periodic orbit: a crisis if there is chaos on every known side.
+
+    Uniform sliding loses its stability in a Hopf bifurcation only: no real eigenvalue crosses 0.
+    """
     sides = (change.low, change.before), (change.high, change.after)
     ends = [kind[k, slot] for k, slot in sides if slot >= 0]
+    if MotionKind.SLIDING in ends:
+        return BifurcationKind.HOPF
     chaotic = np.isin(ends, (*CHAOS, MotionKind.TRANSIENT_CHAOS))
     return BifurcationKind.CRISIS if chaotic.all() else BifurcationKind.UNDETERMINED

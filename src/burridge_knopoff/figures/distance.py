@@ -9,6 +9,7 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from burridge_knopoff.figures.model_words import friction_parameter
 from burridge_knopoff.figures.style import label_panels, panel_table, say, scale_to_decades, styled
 
 TITLE = "J versus time"
@@ -58,7 +59,7 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
             panel.axvline(point.attrs["transient"], color="0.5", linestyle=":", linewidth=0.8, label="averaging begins")
             if not distance.any():
                 say(panel, "$J = 0$ at all times")
-        titles.append(f"{initial}, $a={point['a'].item():g}$, {point.attrs['law']} law")
+        titles.append(", ".join([initial, *friction_parameter(point), f"{point.attrs['law']} law"]))
     table[0, 0].legend(loc="upper right", handlelength=1.2)
     label_panels(table.flat, titles + [f"{title}, logarithmic" for title in runs])
     return figure

@@ -24,7 +24,8 @@ def draw(equilibrium: xarray.Dataset) -> Figure:
     """Draw the largest real part of the eigenvalues versus a, and growth rates of the simulated tangent flow."""
     figure, (panel,) = new_figure(COLUMN, 2.5)
     a = equilibrium["a"].values
-    panel.plot(a, 0.5 * a, color="0.85", linewidth=5.0, solid_capstyle="butt", label="$a/2$")
+    if a.any():
+        panel.plot(a, 0.5 * a, color="0.85", linewidth=5.0, solid_capstyle="butt", label="$a/2$")
     for n, law in enumerate(equilibrium["law"].values):
         part = equilibrium.sel(law=law)
         look = {"color": law_color(n), "linestyle": dashes(n), "marker": lone_marker(a)}

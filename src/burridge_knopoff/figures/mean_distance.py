@@ -69,6 +69,10 @@ def draw(
         runs, size = mean_distance.sel(law=law), 1.9 if attractors is None else 0.9
         if runs["mean_distance"].isnull().all():
             say(panels[0, column], "no run completed")
+        if not runs["mean_distance"].any() and (
+            attractors is None or not attractors["mean_distance"].fillna(0.0).any()
+        ):
+            say(panels[0, column], "$J = 0$ at all times")
         for index, initial in enumerate(runs["initial"].values):
             draw_runs(panels[0, column], runs.sel(initial=initial), "a", **state_symbol(index, size))
         if orbits is not None and np.isfinite(critical := orbits["critical_a"].sel(law=law).item()):

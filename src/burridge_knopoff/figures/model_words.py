@@ -48,6 +48,11 @@ def model_title(model: Model, axes: Collection[str] = ()) -> str:
     return ", ".join([f"{model.law.name} law", *_words(numbers, [model.law.defaults], axes)])
 
 
+def friction_parameter(run: xarray.Dataset) -> list[str]:
+    """Return a of a run for a title, «a = 0.1» as a formula; none under a law without a."""
+    return [parameter_words("a", run["a"].item())] if has_a(run.attrs) else []
+
+
 def fixed_numbers(data: xarray.Dataset, axes: Collection[str] = ()) -> list[str]:
     """Return what a title says of a Dataset: a, if it is the same everywhere, and the numbers that are not the paper's.
 

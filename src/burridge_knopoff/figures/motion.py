@@ -10,7 +10,7 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.model_words import fixed_numbers
+from burridge_knopoff.figures.model_words import fixed_numbers, friction_parameter
 from burridge_knopoff.figures.palette import block_color
 from burridge_knopoff.figures.style import PAGE, StyledFigure, label_panels, say_nothing, styled
 from burridge_knopoff.running.status import STATUS_WORDS
@@ -78,8 +78,8 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
 
 def run_title(point: xarray.Dataset) -> str:
     """Return the initial state, a and law of a point file, and the numbers of the model that are not the paper's."""
-    run = f"{point.attrs['initial']}, $a={point['a'].item():g}$, {point.attrs['law']} law"
-    return ", ".join([run, *fixed_numbers(point, ["a"])])
+    run = [point.attrs["initial"], *friction_parameter(point), f"{point.attrs['law']} law"]
+    return ", ".join([*run, *fixed_numbers(point, ["a"])])
 
 
 def early_end(point: xarray.Dataset) -> str:

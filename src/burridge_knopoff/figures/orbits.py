@@ -53,8 +53,11 @@ def draw(orbits: xarray.Dataset, runs: xarray.Dataset) -> Figure:
     """
     figure, panels = new_figure(PAGE, 5.6, rows=2, columns=2, share_rows=False, share_columns=False)
     if not np.isfinite(orbits["critical_a"]).any():
+        was_found = np.isfinite(orbits["period"]).any()
         for panel in panels:
-            say_nothing(panel, "no synchronized orbit")
+            say_nothing(
+                panel, "the synchronized orbit\nloses its stability at no $a$" if was_found else "no synchronized orbit"
+            )
         return figure
     for index, law in enumerate(orbits["law"].values):
         part = orbits.sel(law=law)

@@ -57,12 +57,13 @@ struct Layout : Lanes<COUNT> {
     using typename Lanes<COUNT>::mask;
 
     int columns = 0;
-    Rows diagonal, threshold, weakening, sliding_force, mass, inverse_mass, damping_diagonal, damping_load;
+    Rows diagonal, threshold, sliding_force, mass, inverse_mass, damping_diagonal, damping_load;
     // Contribution of stuck neighbours outside the group to ds_i/dτ, see Blocks::outside.
     Rows drift;
     std::vector<mask> present;
     bool linear, drops, symmetric, damped;
     Number v, at_rest, rate, coincidence, young, pace, creep_speed;
+    Rows weakening;
 
     // The value for one lane, or for all lanes.
     static double of_lane(const Number &number, int lane) {

@@ -189,18 +189,18 @@ struct Series {
             x(1)[c] = state.velocity[c] - layout.v;
         }
         for (int c = 0; c < columns; c++) {
-            const vec slip = state.slip[c], along = slip * layout.weakening[c], own = along * u(0)[c],
-                      s = state.force(c);
+            const vec slip = state.slip[c], own = slip * u(0)[c], s = state.force(c);
+            const vec along = slip * layout.weakening[c], argument = own * layout.weakening[c];
             slipping[c] = slip * slip;
             stuck[c] = 1.0 - slipping[c];
             // With the sign of the slip direction, as friction; divided by the mass, as accelerations.
             signed_threshold[c] = (slip * layout.threshold[c]) * layout.inverse_mass[c];
             vec friction, slope;
             if (law.law.linear) {
-                friction = layout.at_rest - layout.rate * own;
+                friction = layout.at_rest - layout.rate * argument;
                 slope = -layout.rate - vec{};
             } else {
-                law.start(c, own);
+                law.start(c, argument);
                 friction = law.friction(c, 0);
                 slope = law.slopes(c)[law.law.value];
             }
@@ -213,7 +213,7 @@ struct Series {
             const mask young = (slip != vec{}) & ((state.touching[c] > 0.0) | (state.age[c] < layout.young));
             if (any(young)) acceleration = select(young, state.slip_acceleration(c, s, young), acceleration);
             u(1)[c] = acceleration;
-            g(0)[c] = slip * u(0)[c] + (slipping[c] * layout.creep_speed + stuck[c] * (layout.threshold[c] - s));
+            g(0)[c] = own + (slipping[c] * layout.creep_speed + stuck[c] * (layout.threshold[c] - s));
         }
         for (int c = 0; c < columns; c++) force[c] = state.force_rate(x(1), u(1), c);
     }
@@ -238,13 +238,13 @@ struct Series {
         for (int c = 0; c < count; c++) {
             Column &at = own[c];
             at.slip = state.slip[c];
-            at.along = at.slip * layout.weakening[c];
             at.stuck = stuck[c];
             at.moving = slipping[c] * layout.inverse_mass[c];
             at.rests = L::ONE_CLOCK && !COLUMNS && KIND == HYPERBOLIC_LAW && !any(at.slip != vec{});
             at.friction_slope = friction_slope[c];
             at.force = force[c];
             at.speed = u(1)[c];
+            if constexpr (KIND != LINEAR_LAW) at.along = at.slip * layout.weakening[c];
             if constexpr (KIND == HYPERBOLIC_LAW) {
                 at.line = law.row(1, c);
                 at.inverse = law.row(2, c);

@@ -22,6 +22,8 @@ from burridge_knopoff.values import Unchanging, instance_of, real_array, real_nu
 
 #: A law must be analytic up to this speed. Blocks stay slower if springs and thresholds are about 1.
 MAX_SPEED = 10.0
+#: Blocks whose friction grows stay below the speed at which it reaches this many thresholds, the force on a block.
+MAX_FRICTION = 10.0
 
 # Φ(0) may exceed 1 by this much because of rounding in the formula.
 ROUNDING = 1e-12
@@ -170,8 +172,13 @@ class Law(Unchanging):
         return self.tape.is_linear
 
     def steepest_slope(self, low: float, high: float) -> float:
-        """Return the largest modulus of the slope at speeds from `low` to `high`."""
-        return float(np.abs(self.slope(np.linspace(low, high, 4 * SAMPLES + 1))).max())
+        """Return the largest modulus of the slope at speeds from `low` to `high`.
+
+        Speeds below 0 count up to a friction of MAX_FRICTION.
+        """
+        speed = np.linspace(low, high, 4 * SAMPLES + 1)
+        reached = (speed >= 0.0) | (self(speed) <= MAX_FRICTION)
+        return float(np.abs(self.slope(speed[reached])).max())
 
     @cached_property
     def initial_slope(self) -> float:

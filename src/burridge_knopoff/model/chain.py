@@ -141,8 +141,9 @@ class Chain(Unchanging):
     weakening: Annotated[
         Numbers,
         Either((_WEAKENING, Several(_WEAKENING), RandomNumbers(_WEAKENING))),
-        "factor of the slip speed in the friction law, and thus of a where the formula has a only as a*u: one number "
-        "for all blocks, one per block, or random; negative: friction that falls with speed grows, 0: Coulomb friction",
+        "factor of the slip speed in the friction law: one number for all blocks, one per block, or random. It is a "
+        "factor of a where the formula has a only as a*u; negative: friction that falls with speed grows instead, 0: "
+        "Coulomb friction",
     ] = 1.0
 
     def __post_init__(self) -> None:

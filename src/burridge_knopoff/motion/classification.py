@@ -16,6 +16,7 @@ from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.kind import CHAOS, MotionKind, chaotic_kind, periodic_orbit_kind, synchronization_distance
 from burridge_knopoff.motion.observables import SteadyMotion, observe, run_options
 from burridge_knopoff.motion.phase_locking import locked_orbit
+from burridge_knopoff.motion.section_returns import Returns
 from burridge_knopoff.motion.set_distance import SPACINGS, is_near
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.periodic_orbits.floquet import multipliers
@@ -42,6 +43,7 @@ class Classifier:
     longer_window : window in which an exponent of 0.001 exceeds its error. Even in a window four times as long, some
         weakly attracting periodic orbits do not repeat
     longest_window : window in which an exponent of 3e-5 exceeds its error
+    settled : returns that fill the set of the motion, if that takes more than the usual window, as near a resonance
     """
 
     model: Model
@@ -53,6 +55,7 @@ class Classifier:
     chaotic_growth: float = 20.0
     longer_window: float = 20.0
     longest_window: float = 100.0
+    settled: Returns | None = None
 
     def measure(self, start: ChainState) -> SteadyMotion | None:
         """Measure the motion from a settled state; None if the run does not complete or has too few stops.
@@ -164,11 +167,12 @@ class Classifier:
         return usual.mean_distance if far else None
 
     def _has_drifted(self, usual: SteadyMotion, longer: SteadyMotion) -> bool:
-        """Return whether the last returns of a longer window lie elsewhere than those of the usual window."""
-        if usual.block != longer.block:
+        """Return whether the last returns of a longer window lie elsewhere than those on which the motion settled."""
+        before = usual if self.settled is None else self.settled
+        if before.block != longer.block:
             return False
-        reach = max(MEAN_TOLERANCE * self.model.scale, SPACINGS * usual.spacing)
-        return not is_near(longer.returns[-len(usual.returns) :], usual.returns, reach)
+        reach = max(MEAN_TOLERANCE * self.model.scale, SPACINGS * before.spacing)
+        return not is_near(longer.returns[-len(usual.returns) :], before.returns, reach)
 
     def _has_other_mean(self, one: SteadyMotion, other: SteadyMotion) -> bool:
         """Return whether ⟨J⟩ of two motions differs by more than its errors."""

@@ -57,7 +57,7 @@ def opening(study: Study) -> str:
 def _parameters(study: Study) -> dict[str, str]:
     """Return v, a and every other parameter that a study varies, with its values in words."""
     config = study.config
-    lists = config["grid"] or {"a": config["a"]}
+    lists = config["grid"] or ({"a": config["a"]} if study.has_a else {})
     return {"v": text(config["v"]), **{name: _format_grid(items) for name, items in lists.items()}}
 
 
@@ -98,6 +98,7 @@ def _parameter_rows(study: Study) -> list[tuple[str, str]]:
     rows = {
         name: f"{name} = {words[name]}: {format_count(len(values), 'value')}"
         for name, values in study.parameters.items()
+        if name in words
     }
     rows.setdefault("v", f"v = {words['v']}")
     kinds = {"a": "Friction parameter", "v": "Driver velocity"}

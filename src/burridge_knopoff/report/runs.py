@@ -104,11 +104,10 @@ def _format_errors(values: np.ndarray, errors: np.ndarray) -> Any:
 
 
 def _split_command(commands: Commands, law: str, initial: str) -> list[str]:
-    """Return the command of a run in two parts, before and after its value of a."""
+    """Return the command of a run in two parts, before and after its value of a; in one part under a law without a."""
     name, value = next(iter(commands.study.grid.items()))
     command = commands.simulate(law, initial, name).removesuffix(f"{name}.nc")
-    before, after = command.split(f" --a {value!r} ", 1)
-    return [before, after]
+    return command.split(f" --a {value!r} ", 1)
 
 
 def unclear_runs(commands: Commands, mean_distance: xarray.Dataset, agreement: xarray.Dataset) -> list[dict[str, str]]:

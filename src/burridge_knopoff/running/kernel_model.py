@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from burridge_knopoff.kernel._core import KernelModel
-from burridge_knopoff.laws.law import MAX_SPEED
+from burridge_knopoff.laws.law import MAX_SPEED, Law
 from burridge_knopoff.model.model import Model
 
 # A weaker spring to the driver moves a block that creeps less than rounding does.
@@ -43,12 +45,18 @@ def kernel_model(model: Model, loading: str = "steady") -> KernelModel:
         slope=law.tape.slope,
         linear=law.is_linear,
         rate=-law.initial_slope,
-        steepest=law.steepest_slope(*(MAX_SPEED * factor for factor in chain.weakening_range)),
+        steepest=_steepest_slope(law, *chain.weakening_range),
         v=v,
         symmetric=model.contact == "symmetric",
         creep_speed=creep_speed(model, loading),
         rest_speed=rest_speed(model) if loading == "quasistatic" else 0.0,
     )
+
+
+@lru_cache(maxsize=256)
+def _steepest_slope(law: Law, least: float, largest: float) -> float:
+    """Return the largest modulus of the slope of a law between these factors of the largest speed."""
+    return law.steepest_slope(MAX_SPEED * least, MAX_SPEED * largest)
 
 
 def creep_speed(model: Model, loading: str) -> float:

@@ -49,6 +49,11 @@ class Study:
         return tuple(self.config["laws"])
 
     @property
+    def has_a(self) -> bool:
+        """Whether any of the laws contains a."""
+        return any(model_of(self.config, law, 0.0).law.has_a for law in self.laws)
+
+    @property
     def initial(self) -> tuple[str, ...]:
         """Names of the initial states."""
         return tuple(self.config["initial"])

@@ -17,7 +17,7 @@ from burridge_knopoff.basins.pair_separation import SEPARATIONS, follow_pairs
 from burridge_knopoff.basins.plane import pixel_centres, plane, states
 from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.basins.uncertainty import ExponentKind, uncertainty_exponent
-from burridge_knopoff.dataset.law_attributes import has_a
+from burridge_knopoff.dataset.law_attributes import has_a, without_a
 from burridge_knopoff.dataset.summary import AXES, axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.fields import settings_from_config
@@ -248,6 +248,7 @@ def merge(
         "first_range": np.array(basins.first_position),
         "last_range" if row == "last_position" else "velocity_range": np.array(interval),
         "label_limit": label_limit,
+        **without_a([model.law for model in models]),
     }
     variables = _of_plane(MAP_VARIABLES, row)
     return summary("Basins of attraction", variables, values, coordinates, attributes, module=__name__)

@@ -97,6 +97,8 @@ def digest(data: xarray.Dataset) -> str:
         words = "W never crosses 0 upward" if completed.any() else NONE_COMPLETED
         if len(a):
             ends = span(f"{velocity.min():.4g}", f"{velocity.max():.4g}")
-            words = f"W' at upward crossings is {ends}, largest at a = {a[velocity.argmax()]:g}"
+            words = f"W' at upward crossings is {ends}"
+            if len(np.unique(data["a"])) > 1:
+                words += f", largest at a = {a[velocity.argmax()]:g}"
         lines.append(f"{law}, {initial}: {'; '.join([words, *incomplete(completed)])}")
     return "\n".join(lines)

@@ -6,7 +6,6 @@ from collections.abc import Iterable
 
 import xarray
 
-from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.summaries.branch_rows import branch_rows
 from burridge_knopoff.summaries.text_table import UNLIMITED, table, wrap_line
 
@@ -37,8 +36,8 @@ def branch_lines(attractors: xarray.Dataset, width: int = UNLIMITED) -> list[str
             for row in every
             if row.law == law
         ]
-        plural, values = "es" * (len(rows) != 1), format_count(attractors.sizes["a"], "value")
-        head = f"{law} law: {len(rows)} branch{plural} at {values} of a"
+        count = attractors.sizes["a"]
+        head = f"{law} law: {len(rows)} branch{'es' * (len(rows) != 1)}{f' at {count} values of a' * (count > 1)}"
         lines += ["", *wrap_line(f"{head}; {_exceptions(attractors.sel(law=law))}", width)]
         lines += table(HEAD, rows, width) if rows else []
     return lines
@@ -60,5 +59,6 @@ def _exceptions(part: xarray.Dataset) -> str:
         (sliding, "uniform sliding attracts"),
     ):
         if where.any():
-            words.append(f"{problem} at a = {', '.join(f'{value:g}' for value in part['a'].values[where])}")
+            a = part["a"].values
+            words.append(problem + (f" at a = {', '.join(f'{value:g}' for value in a[where])}" if len(a) > 1 else ""))
     return "; ".join(words)

@@ -24,7 +24,7 @@ from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.uniform_sliding import DIGITS, eigenvalues, round_digits
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.summaries.sentences import lines_of, values_where
+from burridge_knopoff.summaries.sentences import at_value, lines_of, values_where
 
 #: Growth rates up to this one are rounding errors.
 ROUNDING = 1e-10
@@ -152,7 +152,7 @@ def digest(data: xarray.Dataset) -> str:
         if np.isnan(growth).all():
             return "uniform sliding was not examined"
         where = values_where(growth > ROUNDING, a)
-        largest = f"; the largest growth rate is {np.nanmax(growth):.4g} at a = {a[np.nanargmax(growth)]:g}"
+        largest = f"; the largest growth rate is {np.nanmax(growth):.4g}{at_value(a, int(np.nanargmax(growth)))}"
         return f"perturbations of uniform sliding grow {where}{largest * bool((growth > ROUNDING).any())}"
 
     return lines_of(data, ["law"], sentence)

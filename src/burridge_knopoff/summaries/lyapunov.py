@@ -28,7 +28,7 @@ from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.summaries import runs as all_runs
 from burridge_knopoff.summaries.runs import RUN
 from burridge_knopoff.summaries.sentences import RUN as LINE
-from burridge_knopoff.summaries.sentences import incomplete, largest, lines_of
+from burridge_knopoff.summaries.sentences import at_value, incomplete, largest, lines_of, values_where
 
 _UNCLEAR = "undetermined at {} of a from the run alone (agreement.nc has the kind of the attractor)"
 
@@ -131,8 +131,12 @@ def digest(data: xarray.Dataset) -> str:
 
 def _chaotic_values(kind: xarray.DataArray) -> Iterator[str]:
     is_chaotic = kind.isin(CHAOS).values
-    first = f", first at a = {kind['a'].values[is_chaotic.argmax()]:g}" if is_chaotic.any() else ""
-    yield f"chaotic at {is_chaotic.sum()} of {kind.size} values of a{first}"
+    a = kind["a"].values
+    if len(a) == 1:
+        yield f"chaotic {values_where(is_chaotic, a)}"
+    else:
+        first = f", first{at_value(a, int(is_chaotic.argmax()))}" if is_chaotic.any() else ""
+        yield f"chaotic at {is_chaotic.sum()} of {kind.size} values of a{first}"
     if unclear := int((kind == MotionKind.UNDETERMINED).sum()):
         yield _UNCLEAR.format(format_count(unclear, "value"))
 

@@ -11,7 +11,7 @@ import xarray
 from burridge_knopoff.dataset.decoding import decode_flags
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
-from burridge_knopoff.laws import Law, law_of
+from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
@@ -141,7 +141,7 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
     }
     orbits: dict[str, KnownOrbits | None] = {}
     for i, model in enumerate(models):
-        orbits[laws[i]] = _orbits_of_model(model)
+        orbits[laws[i]] = _orbits_of_model(model.at(a=grid[-1]) if model.law.has_a else model)
         _fill_curve(values, i, model, orbits[laws[i]], grid)
         _fill_transition(values, i, orbits[laws[i]], asymmetry)
     if len(pair) == len(PAPER_LAWS):
@@ -185,9 +185,9 @@ def _fill_curve(
     """Fill in the orbits along the grid for the i-th law."""
     for k, a in enumerate(grid):
         values["status"][i, k] = OrbitStatus.NOT_FOUND if model.blocks == BLOCKS else OrbitStatus.NOT_THREE_BLOCKS
-        if model.blocks == BLOCKS and _is_constant(model.at(a).law):
+        if model.blocks == BLOCKS and _has_constant_friction(model.at(a)):
             values["status"][i, k] = OrbitStatus.NEUTRAL
-        if orbits is None or a == 0.0:
+        if orbits is None or (model.law.has_a and a == 0.0):
             continue
         try:
             orbit = orbits.at(a)
@@ -199,6 +199,9 @@ def _fill_curve(
         values["residual"][i, k] = orbit.residual
         values["lateral_slip_time"][i, k] = orbit.period - orbit.stick_time(0)
         values["center_stick_time"][i, k] = orbit.stick_time(1)
+        # Without stops a perturbation of x_1 − x_3 has two multipliers.
+        if not orbit.stop_counts[0]:
+            continue
         try:
             spectrum = modes(orbit)
         except OrbitError as error:
@@ -219,9 +222,11 @@ def modes(orbit: PeriodicOrbit) -> np.ndarray:
     return np.array([spectrum.transverse, returned, *spectrum.symmetry_preserving[:2], 0.0, 0.0], dtype=complex)
 
 
-def _is_constant(law: Law) -> bool:
+def _has_constant_friction(model: Model) -> bool:
     """Return whether friction equals static friction at every speed."""
-    return law.is_linear and law.initial_slope == 0.0 and float(law(0.0)) == 1.0
+    law = model.law
+    is_flat = (law.is_linear and law.initial_slope == 0.0) or not model.chain.weakenings.any()
+    return is_flat and float(law(0.0)) == 1.0
 
 
 def _fill_transition(values: dict[str, Any], i: int, orbits: KnownOrbits | None, asymmetry: np.ndarray) -> None:

@@ -22,7 +22,12 @@ def lines_of(data: xarray.Dataset, dimensions: Sequence[str], sentence: Callable
 
 
 def values_where(holds: np.ndarray, a: np.ndarray) -> str:
-    """Return the values of a at which something holds: `up to a = 0.085`, `at a = 0.02 to 0.04, 0.05`, `at no a`."""
+    """Return the values of a at which something holds: `up to a = 0.085`, `at a = 0.02 to 0.04, 0.05`, `at no a`.
+
+    A single value is not named: laws without a have one, 0.
+    """
+    if len(a) == 1:
+        return "in every case" if holds.all() else "in no case"
     if holds.all():
         return "at all a"
     if not holds.any():
@@ -31,13 +36,20 @@ def values_where(holds: np.ndarray, a: np.ndarray) -> str:
     return f"up to a = {a[last]:g}" if holds[: last + 1].all() else format_values(a, holds)
 
 
+def at_value(a: np.ndarray, index: int) -> str:
+    """Return at which of the values of a something is, ` at a = 0.05`; empty for a single value, as `values_where`."""
+    return f" at a = {a[index]:g}" if len(a) > 1 else ""
+
+
 def largest(name: str, values: xarray.DataArray) -> Iterator[str]:
     """Yield the largest finite value and where it is, over a or other parameters, if there is one."""
     finite = values.where(np.isfinite(values))
     if finite.notnull().any():
         place = finite.isel(finite.argmax(...))
-        where = ", ".join(f"{dimension} = {place[dimension].item():g}" for dimension in values.dims)
-        yield f"largest {name} {place.item():.4g} at {where}"
+        where = [
+            f"{dimension} = {place[dimension].item():g}" for dimension in values.dims if values.sizes[dimension] > 1
+        ]
+        yield f"largest {name} {place.item():.4g}{' at ' * bool(where)}{', '.join(where)}"
 
 
 def incomplete(completed: np.ndarray) -> Iterator[str]:

@@ -23,7 +23,7 @@ from burridge_knopoff.summaries.correlation import correlation
 from burridge_knopoff.summaries.points import EVENTS, all_events, point_axes
 from burridge_knopoff.summaries.runs import RUN, over_runs
 from burridge_knopoff.summaries.sentences import RUN as LINE
-from burridge_knopoff.summaries.sentences import incomplete, lines_of, values_where
+from burridge_knopoff.summaries.sentences import at_value, incomplete, lines_of, values_where
 
 STOP, START = 0, 1
 
@@ -231,12 +231,11 @@ def digest(data: xarray.Dataset) -> str:
         place, block = np.unravel_index(np.nanargmax(stuck), stuck.shape)
         words = [f"every block stops {values_where(completed & (rate > 0.0).all(axis=-1), a)}"]
         if stuck[place, block] > 0.0:
-            which = f"block {part['block'].values[block]} at a = {a[place]:g}"
+            which = f"block {part['block'].values[block]}{at_value(a, int(place))}"
             words.append(f"the largest fraction of time in which a block sticks is {stuck[place, block]:.2g} ({which})")
         negative = np.count_nonzero(part["velocity_correlation"].values < 0.0)
-        words.append(
-            f"the velocities of the end blocks are negatively correlated at {negative} of {len(a)} values of a"
-        )
+        where = f"at {negative} of {len(a)} values of a" if len(a) > 1 else values_where(np.array([negative > 0]), a)
+        words.append(f"the velocities of the end blocks are negatively correlated {where}")
         return "; ".join([*words, *incomplete(completed)])
 
     return lines_of(data, LINE, sentence)

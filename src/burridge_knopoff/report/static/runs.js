@@ -9,11 +9,11 @@ const comparedRows = ({ law, initial, a }) => runs.laws.slice(1).flatMap((name, 
 
 const commandsOf = ({ law, initial, a }) => {
   const path = `points/${runs.laws[law]}/${runs.initial[initial]}/a${runs.names[a]}.nc`;
-  const [before, after] = runs.simulate[law][initial];
+  const parts = runs.simulate[law][initial];
   return {
     path,
     snakemake: ["snakemake -c1 --force", `${runs.results}/${path}`, runs.arguments].filter(Boolean).join(" "),
-    simulate: `${before} --a ${runs.texts[a]} ${after}${runs.names[a]}.nc`,
+    simulate: `${parts.join(` --a ${runs.texts[a]} `)}${runs.names[a]}.nc`,
   };
 };
 
