@@ -1,4 +1,4 @@
-"""Cost of planning studies of many points, and the disk space that they need: the numbers of docs/cluster.md.
+"""Cost of planning studies of many points, and the disk space that they need: some are in docs/cluster.md.
 
 For each number of points a config is written and planned (`snakemake -n`), on this machine and for Slurm, where points
 form groups; and one of its points is planned alone, as every submitted job does before it begins. Numbers of points

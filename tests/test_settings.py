@@ -1,6 +1,6 @@
 """Settings: every field of every class takes the ends of its range and refuses, in one line, what lies outside.
 
-The classes are found in the package. config/README.md has the ranges and defaults of those that a config sets;
+The classes are found in the package. config/keys.md has the ranges and defaults of those that a config sets;
 tests/study/test_keys.py compares it with the fields.
 """
 

@@ -1,4 +1,4 @@
-"""A changed config is refused with one line, or the study is what config/README.md says.
+"""A changed config is refused with one line, or the study is what config/keys.md says.
 
 The check is independent of the code that reads a config.
 """
@@ -173,7 +173,7 @@ def test_every_key_is_changed():
 
 
 def check_study(study, written):
-    """Require that config/README.md and the schema allow an accepted study, and that it is what the file says."""
+    """Require that config/keys.md and the schema allow an accepted study, and that it is what the file says."""
     SCHEMA.validate(written)
     values, keys = flat(study.config), flat(written)
     assert set(keys) <= KNOWN, set(keys) - KNOWN

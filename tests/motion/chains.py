@@ -30,7 +30,7 @@ def two_block_exponent(law, a):
     run = reference_run(law, a, [-0.99 + SHIFT, -0.99 - SHIFT], end=period, **options)
     multiplier = float((run.position[0] - run.position[1]) / (2.0 * SHIFT))
     if law == "linearized":
-        # docs/chains.md has the closed form.
+        # docs/studies.md has the closed form.
         time, omega = float(stop - start), math.sqrt(3.0 - a**2 / 4.0)
         closed = math.exp(a * time / 2.0) * (math.cos(omega * time) - a / (2.0 * omega) * math.sin(omega * time))
         assert multiplier == pytest.approx(closed, abs=1e-9)

@@ -1,4 +1,4 @@
-"""config/README.md lists every key of a config, as the code defines it."""
+"""config/keys.md lists every key of a config, as the code defines it."""
 
 import importlib.util
 import re

@@ -1,4 +1,4 @@
-"""Small random studies at the limits of the ranges in config/README.md, each run to its report or refused at once.
+"""Small random studies at the limits of the ranges in config/keys.md, each run to its report or refused at once.
 
 `BK_FUZZ=10` draws ten times as many; `BK_KEEP` names a folder in which the studies are kept for inspection.
 """

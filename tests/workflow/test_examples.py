@@ -7,7 +7,18 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff import Chain, Model, MotionKind, decode_flags, law_of, multipliers, simulate
+from burridge_knopoff import (
+    Chain,
+    InitialState,
+    Model,
+    MotionKind,
+    decode_flags,
+    law_of,
+    multipliers,
+    open_study,
+    record_events,
+    simulate,
+)
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from tests.pages import outputs
 from tests.test_tutorial import FROM_FILES
@@ -67,7 +78,6 @@ def test_velocity_is_a_scale_only_under_the_linearized_law(tmp_path, monkeypatch
 
 def test_outcomes_alternate_along_a_line_of_initial_states(tmp_path, monkeypatch):
     monkeypatch.chdir(finished_example("history", tmp_path))
-    check_page("studies.md", "Other initial states")
     check_page("tutorial.md", FROM_FILES)
     mean = open_result(tmp_path, "mean_distance")["mean_distance"].sel(law="linearized")
     line = ["minus", "first_m06", "first_0", "plus"]
@@ -78,25 +88,30 @@ def test_outcomes_alternate_along_a_line_of_initial_states(tmp_path, monkeypatch
     assert (np.abs(exponent.sel(a=0.08).max("exponent")) < 1e-3).all()
 
 
-def test_five_blocks_synchronize_in_two_windows(tmp_path, monkeypatch):
-    monkeypatch.chdir(finished_example("five_blocks", tmp_path))
-    check_page("studies.md", "Five blocks")
+def test_five_blocks_synchronize_in_two_windows(tmp_path):
+    finished_example("five_blocks", tmp_path)
+    mean = open_result(tmp_path, "mean_distance")["mean_distance"].sel(law="linearized", a=0.07)
+    assert (mean.sel(initial=["minus", "plus"]) < 1e-6).values.tolist() == [True, False]
     chains = open_result(tmp_path, "chains").sel(law="linearized", blocks=5)
     reached = (chains["outcome"] == 1).any("state").values.tolist()
     assert reached == [True, False, True, False]
     assert (chains["symmetric_exponent"].max("symmetric_state") < 0.0).values.tolist() == reached
 
 
-def test_slips_of_a_carlson_langer_chain_are_small_and_large(tmp_path, monkeypatch):
-    monkeypatch.chdir(finished_example("carlson_langer", tmp_path))
-    check_page("studies.md", "A Carlson-Langer chain")
+def test_slips_of_a_carlson_langer_chain_are_small_and_large(tmp_path):
+    finished_example("carlson_langer", tmp_path)
     runs = open_result(tmp_path, "lyapunov")
     assert (runs["lyapunov_exponent"] > 5.0 * runs["lyapunov_error"]).all()
+    config = open_study(tmp_path / "results" / "carlson_langer").config
+    rough = InitialState("rough", *(tuple(config["initial"]["rough"][key]) for key in ("position", "velocity")))
+    for a in config["a"]:
+        model = Model(Chain(10, coupling=9.0, pulling=1.0), law_of("carlson_langer", a), config["v"])
+        blocks = record_events(model, model.begin(rough, "tested"), 3000.0, begin=1000.0).blocks
+        assert (blocks.min(), blocks.max()) == (1, 10)
 
 
-def test_unequal_blocks_are_periodic_or_chaotic(tmp_path, monkeypatch):
-    monkeypatch.chdir(finished_example("unequal_blocks", tmp_path))
-    check_page("studies.md", "Two unequal blocks")
+def test_unequal_blocks_are_periodic_or_chaotic(tmp_path):
+    finished_example("unequal_blocks", tmp_path)
     kind = open_result(tmp_path, "agreement")["kind"]
     assert decode_flags(kind).sel(law="coulomb").values.tolist() == 2 * [["periodic", "periodic", "chaotic"]]
 

@@ -5,7 +5,7 @@ A setting is a field of a dataclass whose type is annotated with a range and a d
     step: Annotated[float, Number(1e-9, 10.0), "step of rk4"] = 1e-3
 
 This single line defines the setting in Python, in the options of `bk simulate`, in the config of a study and in the
-tables of config/README.md. The decorator `settings` makes `help` show the plain type.
+tables of config/keys.md. The decorator `settings` makes `help` show the plain type.
 """
 
 from __future__ import annotations

@@ -6,8 +6,8 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.settings import Settings
 
-# Measured (docs/performance.md): events per block and time unit; CPU seconds per event and block of its group, without
-# perturbations and for each perturbation; memory per block; CPU seconds per step of rk4 and block.
+# Measured (benchmarks/chains.py): events per block and time unit; CPU seconds per event and block of its group,
+# without perturbations and for each perturbation; memory per block; CPU seconds per step of rk4 and block.
 EVENTS, SECONDS, SECONDS_OF_PERTURBATION, BYTES, SECONDS_OF_STEP = 0.2, 1.5e-7, 1e-7, 4500.0, 6.5e-8
 #: In a dense network: CPU seconds per event and block, and in addition for each block that slips; memory per spring.
 SECONDS_OF_DENSE, SECONDS_OF_PULL, BYTES_OF_SPRING = 2.5e-7, 1e-8, 600.0
