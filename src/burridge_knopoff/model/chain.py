@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -60,7 +60,7 @@ _SIDE = Whole(1, MAXIMUM_BLOCKS)
 
 
 @settings
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Chain(Unchanging):
     """N blocks in a row, a ring, a grid, or any network of springs.
 
@@ -176,6 +176,12 @@ class Chain(Unchanging):
             raise refusal("chain.pulling", NEIGHBOURS, "a number, or one per block, together with springs by distance")
         if is_new:
             self.check_springs()
+
+    def __repr__(self) -> str:
+        """Return the call that makes this chain: the number of blocks, and what differs from the defaults."""
+        values = ((field, getattr(self, field.name)) for field in fields(self) if field.name != "blocks")
+        others = [f"{field.name}={value!r}" for field, value in values if value != field.default]
+        return f"Chain({', '.join([str(self.blocks), *others])})"
 
     def _check_network(self) -> None:
         option = "chain.springs" if self.springs else "chain.grid"
