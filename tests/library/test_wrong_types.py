@@ -194,6 +194,9 @@ FORMULAS = {
     "Chain.sliding_offset",
     "Law.least_friction",
     "FormulaLaw.least_friction",
+    "Law.steepest_slope",
+    "FormulaLaw.steepest_slope",
+    "Model.least_friction",
     "Model.check_directions",
 }
 TYPES = ("float", "int", "bool", "Any")
