@@ -1,0 +1,30 @@
+// The address: a run, as #run=law/initial state/a, or a place of the page, which opens if it is folded.
+function follow() {
+  const address = location.hash.slice(1);
+  if (runs && (!address || address.startsWith("run="))) {
+    if (pickFrom(address.slice("run=".length)) && address) byId("run").scrollIntoView({ block: "nearest" });
+  } else {
+    openPlace(byId(decodeURIComponent(address)));
+  }
+}
+
+/** Open all folds around an element and its own, and show it. */
+function openPlace(place) {
+  if (!place) return;
+  showClaim(place);
+  const own = place.querySelector(":scope > details");
+  if (own) own.open = true;
+  for (let fold = place.closest("details"); fold; fold = fold.parentElement.closest("details")) fold.open = true;
+  place.scrollIntoView();
+}
+
+function startAddress() {
+  window.addEventListener("hashchange", follow);
+  // A link to the place that the address has already opens it again.
+  document.addEventListener("click", (event) => {
+    const link = event.target.closest("a[href^='#']");
+    if (link && !event.defaultPrevented && link.hash === location.hash) follow();
+  });
+  if (runs) pick(...runs.first);
+  if (location.hash) follow();
+}
