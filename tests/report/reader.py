@@ -117,10 +117,10 @@ def check_run(page, results, law, initial, a):
     for line, value, spread in zip(lines, exponents, errors, strict=True):
         check_number(line.split(" = ")[1], value, spread)
     assert unicodedata.normalize("NFKC", fields["Run"]) == f"{law} law, initial state {initial}, a = {a!r}"
-    assert page.locator("#run-snakemake").inner_text() == (
+    assert page.locator("#run-snakemake").text_content() == (
         f"snakemake -c1 --force results/tiny/{path} --configfile study.yaml"
     )
-    words = page.locator("#run-simulate").inner_text().split()
+    words = page.locator("#run-simulate").text_content().split()
     assert words[:7] == ["bk", "simulate", "--law", law, "--a", repr(a), "--initial"]
     assert words[-2:] == ["--out", f"{law}_{initial}_a{a:.4f}.nc"]
 

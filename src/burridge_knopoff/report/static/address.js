@@ -2,7 +2,8 @@
 function follow() {
   const address = location.hash.slice(1);
   if (runs && (!address || address.startsWith("run="))) {
-    if (pickFrom(address.slice("run=".length)) && address) byId("run").scrollIntoView({ block: "nearest" });
+    // An address that is older than the last choice of the reader does not undo it.
+    if (!picked.timer && pickFrom(address.slice("run=".length)) && address) byId("run").scrollIntoView({ block: "nearest" });
   } else {
     openPlace(byId(decodeURIComponent(address)));
   }

@@ -60,7 +60,10 @@ const redrawRuns = () => drawn.forEach((box) => { if ("law" in box.dataset) draw
 function choose(...run) {
   pick(...run);
   clearTimeout(picked.timer);
-  picked.timer = setTimeout(() => { location.hash = runAddress(); }, 300);
+  picked.timer = setTimeout(() => {
+    picked.timer = 0;
+    location.hash = runAddress();
+  }, 300);
 }
 
 const runAddress = () => "run=" + [runs.laws[picked.law], runs.initial[picked.initial], runs.texts[picked.a]].map(encodeURIComponent).join("/");
