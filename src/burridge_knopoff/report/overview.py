@@ -52,7 +52,7 @@ def convention(setting: Mapping[str, Any]) -> str:
 def convention_words(name: str) -> str:
     """Return a convention by its name in a verdict, `contact, start`, in words; the name of a reading as it is."""
     contact, _, start = name.partition(", ")
-    return conventions(contact, start) if contact in CONTACTS and start in STARTS else name
+    return f"{contact} contact, {start} start" if contact in CONTACTS and start in STARTS else name
 
 
 def explanations(words: str, study: Study) -> list[str]:

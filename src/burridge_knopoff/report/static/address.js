@@ -1,12 +1,9 @@
 // The address: a run, as #run=law/initial state/a, or a place of the page, which opens if it is folded.
 function follow() {
   const address = location.hash.slice(1);
-  if (runs && (!address || address.startsWith("run="))) {
-    // An address that is older than the last choice of the reader does not undo it.
-    if (!picked.timer && pickFrom(address.slice("run=".length)) && address) byId("run").scrollIntoView({ block: "nearest" });
-  } else {
-    openPlace(byId(decodeURIComponent(address)));
-  }
+  if (!runs || (address && !address.startsWith("run="))) openPlace(byId(decodeURIComponent(address)));
+  // An address that is older than the last choice of the reader does not undo it.
+  else if (!picked.timer) pickFrom(address.slice("run=".length));
 }
 
 /** Open all folds around an element and its own, and show it. */
@@ -28,4 +25,8 @@ function startAddress() {
   });
   if (runs) pick(...runs.first);
   if (location.hash) follow();
+  // A page that is opened with a run shows all of it, or its top in a small window.
+  const panel = byId("run");
+  if (location.hash.startsWith("#run=") && panel)
+    panel.scrollIntoView({ block: panel.offsetHeight > window.innerHeight ? "start" : "nearest" });
 }

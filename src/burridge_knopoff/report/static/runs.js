@@ -68,13 +68,12 @@ function choose(...run) {
 
 const runAddress = () => "run=" + [runs.laws[picked.law], runs.initial[picked.initial], runs.texts[picked.a]].map(encodeURIComponent).join("/");
 
-/** Show the run of an address, or the first run of the page if it has none; return whether there is such a run. */
+/** Show the run of an address, or the first run of the page if it has none; another address changes nothing. */
 function pickFrom(address) {
   const names = address.split("/").map(decodeURIComponent);
   const run = address ? [runs.laws, runs.initial, runs.texts].map((list, n) => list.indexOf(names[n])) : runs.first;
-  if (run.includes(-1)) return false;
-  if (run.some((place, n) => place !== [picked.law, picked.initial, picked.a][n])) pick(...run);
-  return true;
+  if (run.includes(-1) || run.join() === [picked.law, picked.initial, picked.a].join()) return;
+  pick(...run);
 }
 
 /** Mark the picked run in a chart of the runs of its law, and show the branches if the reader wants them. */
