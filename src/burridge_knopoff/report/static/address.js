@@ -3,7 +3,11 @@ function follow() {
   const address = location.hash.slice(1);
   if (!runs || (address && !address.startsWith("run="))) openPlace(byId(decodeURIComponent(address)));
   // An address that is older than the last choice of the reader does not undo it.
-  else if (!picked.timer) pickFrom(address.slice("run=".length));
+  else if (!picked.timer && pickFrom(address.slice("run=".length))) {
+    // All of it is shown, or its top in a small window.
+    const panel = byId("run");
+    panel.scrollIntoView({ block: panel.offsetHeight > window.innerHeight ? "start" : "nearest" });
+  }
 }
 
 /** Open all folds around an element and its own, and show it. */
@@ -25,8 +29,4 @@ function startAddress() {
   });
   if (runs) pick(...runs.first);
   if (location.hash) follow();
-  // A page that is opened with a run shows all of it, or its top in a small window.
-  const panel = byId("run");
-  if (location.hash.startsWith("#run=") && panel)
-    panel.scrollIntoView({ block: panel.offsetHeight > window.innerHeight ? "start" : "nearest" });
 }

@@ -68,12 +68,13 @@ function choose(...run) {
 
 const runAddress = () => "run=" + [runs.laws[picked.law], runs.initial[picked.initial], runs.texts[picked.a]].map(encodeURIComponent).join("/");
 
-/** Show the run of an address, or the first run of the page if it has none; another address changes nothing. */
+/** Show the run of an address, or the first run of the page if it has none; return whether it is another run. */
 function pickFrom(address) {
   const names = address.split("/").map(decodeURIComponent);
   const run = address ? [runs.laws, runs.initial, runs.texts].map((list, n) => list.indexOf(names[n])) : runs.first;
-  if (run.includes(-1) || run.join() === [picked.law, picked.initial, picked.a].join()) return;
+  if (run.includes(-1) || run.join() === [picked.law, picked.initial, picked.a].join()) return false;
   pick(...run);
+  return true;
 }
 
 /** Mark the picked run in a chart of the runs of its law, and show the branches if the reader wants them. */
