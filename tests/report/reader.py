@@ -61,7 +61,8 @@ class Reader:
         self.page.goto(self.url)
 
     def draw_everything(self):
-        """Scroll to every chart, and wait until it is drawn; return how many there are."""
+        """Open every fold, scroll to every chart, and wait until it is drawn; return how many there are."""
+        self.page.evaluate("document.querySelectorAll('details').forEach((fold) => { fold.open = true; })")
         charts = self.page.locator(".chart").all()
         for chart in charts:
             chart.scroll_into_view_if_needed()
@@ -116,10 +117,10 @@ def check_run(page, results, law, initial, a):
     for line, value, spread in zip(lines, exponents, errors, strict=True):
         check_number(line.split(" = ")[1], value, spread)
     assert unicodedata.normalize("NFKC", fields["Run"]) == f"{law} law, initial state {initial}, a = {a!r}"
-    assert page.locator("#run-snakemake").inner_text() == (
+    assert page.locator("#run-snakemake").text_content() == (
         f"snakemake -c1 --force results/tiny/{path} --configfile study.yaml"
     )
-    words = page.locator("#run-simulate").inner_text().split()
+    words = page.locator("#run-simulate").text_content().split()
     assert words[:7] == ["bk", "simulate", "--law", law, "--a", repr(a), "--initial"]
     assert words[-2:] == ["--out", f"{law}_{initial}_a{a:.4f}.nc"]
 
@@ -173,25 +174,56 @@ def check_blocks(page):
 
 
 def check_filter(page, content):
-    """Statements are shown by verdict, and without those that follow from others; a link opens its details.
+    """Statements are shown by verdict, and without those that follow from others; a link opens its folds.
 
     content : the file of verdicts
     """
-    rows = page.locator(".verdicts tr[data-verdict][id]:visible")
-    everything = rows.count()
+    cards = page.locator("#verdicts [data-verdict][id]:visible")
+    assert cards.count() == 0
     verdict = next(name for name, count in content["counts"].items() if count and name != "not testable")
     page.locator(f'[data-shows="{verdict}"]').click()
-    assert rows.count() == content["counts"][verdict]
+    assert cards.count() == content["counts"][verdict]
     page.locator("#independent-only").check()
-    assert rows.count() == content["independent_counts"][verdict]
+    assert cards.count() == content["independent_counts"][verdict]
     # A statement that is hidden is shown if a link leads to it.
     name = next(claim["name"] for claim in content["claims"] if claim["verdict"] not in (verdict, "not testable"))
     page.evaluate("(name) => { location.hash = `#claim-${name}`; }", name)
-    details = page.locator(f'[data-claim="{name}"][open]')
-    details.wait_for()
-    assert rows.count() == everything
-    assert details.bounding_box()["width"] > 0.9 * page.locator(".verdicts").bounding_box()["width"]
-    page.evaluate("window.scrollTo(0, 0)")
+    card = page.locator(f"#claim-{name}")
+    card.locator("details[open]").wait_for()
+    assert card.bounding_box()["width"] > 0.9 * page.locator("#verdicts").bounding_box()["width"]
+    assert page.locator(".topic[open]").count() == 1
+
+
+def check_address(page, results):
+    """The run that is picked is in the address: with it the page opens, and back and forward lead through the runs."""
+    page.goto("about:blank")
+    page.goto((results / "report.html").as_uri() + "#run=nonlinear/plus/0.2")
+    check_run(page, results, "nonlinear", "plus", 0.2)
+    page.locator("#run-previous").press("Enter")
+    page.wait_for_url("**#run=nonlinear/plus/0.08")
+    page.locator("#run-initial").select_option("minus")
+    page.wait_for_url("**#run=nonlinear/minus/0.08")
+    for move, state, a in ((page.go_back, "plus", 0.08), (page.go_back, "plus", 0.2), (page.go_forward, "plus", 0.08)):
+        move()
+        page.locator("#run-detail").get_by_text(f"state {state}, a\u00a0=\u00a0{a}").wait_for()
+    # What is no run of the study changes nothing, and a place of the page opens.
+    page.evaluate("location.hash = '#run=nonlinear/elsewhere/0.08'")
+    page.evaluate("location.hash = '#provenance'")
+    page.locator("#provenance details[open]").wait_for()
+    check_run(page, results, "nonlinear", "plus", 0.08)
+
+
+def check_branches(page):
+    """Branches of attractors are drawn if they are asked for, with a legend of what is on each chart."""
+    shown = """(box) => box._fullData.filter((trace) => trace.meta === "branch" && trace.visible === true).length"""
+    chart, legends = page.locator('.chart[data-law="0"]'), page.locator(".legend.branches")
+    assert (chart.evaluate(shown), legends.first.is_visible()) == (0, False)
+    page.locator("#branches").check()
+    page.wait_for_function(f"(box) => ({shown})(box) > 0", arg=chart.element_handle())
+    assert chart.evaluate(shown) == legends.first.locator("li").count() <= 8
+    page.locator("#branches").uncheck()
+    page.wait_for_function(f"(box) => ({shown})(box) === 0", arg=chart.element_handle())
+    assert legends.first.is_hidden()
 
 
 def tab_through(page):

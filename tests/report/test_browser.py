@@ -1,6 +1,7 @@
 """The report in a browser, read as its readers do: with a pointer, with the keyboard, on a phone, in print."""
 
 import json
+import re
 from dataclasses import replace
 
 import pytest
@@ -10,7 +11,9 @@ from burridge_knopoff.report.page import render
 from tests.optional import launch_chromium, needs
 from tests.report.reader import (
     Reader,
+    check_address,
     check_blocks,
+    check_branches,
     check_contrast,
     check_filter,
     check_run,
@@ -36,28 +39,36 @@ def test_the_report_of_a_study(browser, reported):
     path = results / "report.html"
     assert path.stat().st_size < 5e6
 
-    reader = Reader(browser, path, color_scheme="light")
+    reader = Reader(browser, path, color_scheme="light", permissions=["clipboard-read", "clipboard-write"])
     page = reader.page
-    # Charts wait until they are scrolled to.
-    assert page.locator(".chart[data-drawn]").count() < page.locator(".chart").count()
-    assert reader.draw_everything() == 10
+    # Charts wait until they are scrolled to, and those in folds until these are opened.
+    page.locator('.chart[data-law="0"][data-drawn]').wait_for()
+    assert page.locator(".chart[data-drawn]").count() <= 2
     assert page.locator(".picture.fallback").first.is_hidden()
-    page.locator(".recompute summary").click()
-    assert page.locator(".meanings .badge").first.inner_text() == "✓ holds"
-    titles = page.locator("main > section > h2").all_inner_texts()
-    assert titles[:6] == [
-        "The paper's claims, tested",
-        "The model",
+    assert page.locator("main section > h2").all_inner_texts() == [
         "Mean distance ⟨J⟩",
-        "Attractors and basins",
-        "Bifurcation diagrams",
-        "Floquet multipliers and the loss of synchrony",
+        "The paper's numbers and main claims",
+        "Verdicts by topic",
     ]
-    # The panel of one run is beside the charts on which it is picked.
-    chart, panel = (page.locator(place).bounding_box() for place in ('.chart[data-law="0"]', "#run"))
-    assert chart["x"] + chart["width"] <= panel["x"]
-    assert abs(chart["y"] - panel["y"]) < 300
+    # The charts are beside each other, and the panel of the run that is picked on them is below.
+    first, second, panel = (
+        page.locator(place).bounding_box() for place in ('[data-law="0"]', '[data-law="1"]', "#run")
+    )
+    assert first["x"] + first["width"] <= second["x"]
+    assert first["y"] + first["height"] <= panel["y"] <= first["y"] + first["height"] + 100
+    # Three screens before anything folds.
+    assert page.locator("#more").bounding_box()["y"] < 3 * 900
+    assert page.locator("[data-shows]").first.inner_text().startswith("✓ holds: ")
+    reached = tab_through(page)
+    assert reached[0] == "Skip to the content"
+    assert {"run-law", "run-initial", "run-a", "run-next", "run-copy"} <= set(reached)
+    assert sum(name.startswith("⟨J⟩ against a, ") for name in reached) == 2
+    check_branches(page)
     check_filter(page, json.loads((results / "summary" / "claims.json").read_text()))
+    check_address(page, results)
+    page.goto("about:blank")
+    page.goto(reader.url)
+    assert reader.draw_everything() == 10
 
     # A run by pointer, by arrow keys, by the buttons and by the lists.
     check_run(page, results, "linearized", "minus", 0.08)
@@ -75,8 +86,11 @@ def test_the_report_of_a_study(browser, reported):
     check_run(page, results, "nonlinear", "minus", 0.05)
     assert page.locator("#run-previous").is_disabled()
     assert page.locator("#run-detail").get_attribute("aria-live") == "polite"
-    page.locator('[data-copies="run-snakemake"]').click()
-    page.locator("#copied").get_by_text("opied").or_(page.locator("#copied").get_by_text("Selected")).wait_for()
+    page.locator("#run-copy").click()
+    page.locator("#copied").get_by_text("Copied.").wait_for()
+    copied = page.evaluate("navigator.clipboard.readText()").splitlines()
+    assert f"⟨J⟩: {detail(page)['⟨J⟩']}" in copied
+    assert copied[-2:] == [page.locator(f"#run-{name}").text_content() for name in ("snakemake", "simulate")]
 
     check_blocks(page)
 
@@ -91,16 +105,11 @@ def test_the_report_of_a_study(browser, reported):
     assert download.value.path().read_bytes().startswith(b"\x89PNG")
 
     # A figure at its full size, opened and closed with the keyboard.
-    page.locator(".verdicts .opens-picture").first.press("Enter")
+    page.locator(".card .opens-picture").first.press("Enter")
     assert page.locator("#viewer").is_visible()
     assert page.locator("#viewer img").evaluate("image => image.decode().then(() => image.naturalWidth)") == 2100
     page.keyboard.press("Escape")
     assert page.locator("#viewer").is_hidden()
-
-    reached = tab_through(page)
-    assert reached[0] == "Skip to the content"
-    assert {"run-law", "run-initial", "run-a", "run-next"} <= set(reached)
-    assert sum(name.startswith("⟨J⟩ against a, ") for name in reached) == 2
 
     # Both themes: readable, and the charts follow.
     paper = "getComputedStyle(document.body).backgroundColor"
@@ -111,21 +120,27 @@ def test_the_report_of_a_study(browser, reported):
     page.wait_for_function(f"(before) => {ink} !== before", arg=light[1])
     assert page.evaluate(paper) != light[0]
     check_contrast(page)
+    reader.close()
+
+    # On paper there are pictures in the place of charts, and no fold that the reader has to open.
+    paper_reader = Reader(browser, path, color_scheme="dark")
+    page = paper_reader.page
     page.emulate_media(media="print")
     assert page.evaluate(paper) == light[0]
     assert page.locator(".chart").first.is_hidden()
     assert page.locator("#further").is_hidden()
-    for picture in page.locator(
-        "section:not(#further) > .panel .picture img, section:not(#further) > .picture img"
-    ).all():
+    for picture in page.locator(".picture:not(#further .picture) img").all():
         assert picture.is_visible()
         assert picture.evaluate("image => image.decode().then(() => image.naturalWidth)") >= 900
-    reader.close()
+    assert len(re.findall(rb"/Type\s*/Page\b", page.pdf(format="A4"))) < 10
+    paper_reader.close()
 
     for width in (360, 320):
         phone = Reader(
             browser, path, viewport={"width": width, "height": 700}, has_touch=True, is_mobile=True, color_scheme="dark"
         )
+        lines = phone.page.locator("nav li").evaluate_all("all => all.map((item) => item.getBoundingClientRect().top)")
+        assert len(set(lines)) == 1
         phone.draw_everything()
         assert phone.page.evaluate("document.documentElement.scrollWidth") <= width
         for stacked in phone.page.locator(".scroll:has(.stacked)").all():
@@ -136,8 +151,9 @@ def test_the_report_of_a_study(browser, reported):
         phone.close()
 
     plain = Reader(browser, path, java_script_enabled=False)
-    for picture in plain.page.locator(".picture img").all():
-        assert picture.is_visible()
+    assert plain.page.locator("#distance .picture img").is_visible()
+    plain.page.locator("#model summary").click()
+    assert plain.page.locator("#figure-sketch img").is_visible()
     assert plain.page.locator(".js-only").first.is_hidden()
     plain.close()
 
@@ -163,7 +179,7 @@ def test_without_decompression_there_are_pictures(browser, poor):
     page = context.new_page()
     page.goto(path.as_uri())
     assert page.locator(".too-old").is_visible()
-    assert all(picture.is_visible() for picture in page.locator(".picture img").all())
+    assert page.locator("#distance .picture img").is_visible()
     assert page.locator("#run").is_hidden()
     context.close()
 

@@ -46,14 +46,17 @@ def test_prose_distinguishes_symbols_from_words(sentence, html):
 @pytest.mark.parametrize(
     ("value", "error", "shown"),
     [
-        (9.155614e-15, None, "9 × 10⁻¹⁵"),
+        (9.155614e-15, None, "0"),
+        (-9.2e-15, 9.2e-15, "0"),
+        (9.2e-15, np.nan, "0"),
+        (2.9e-8, None, "2.9 × 10⁻⁸"),
+        (9.2e-15, 3e-5, "0.000000 ± 0.000030"),
         (1e-6, None, "10⁻⁶"),
         (0.0, None, "0"),
         (0.741935, None, "0.7419"),
         (12345.0, None, "12345"),
         (-np.inf, None, "−∞"),
         (0.0869729046661, 2e-13, "0.0869729046661 ± 2.0 × 10⁻¹³"),
-        (9.2e-15, 9.2e-15, "(9.2 ± 9.2) × 10⁻¹⁵"),
     ],
 )
 def test_numbers_are_written_as_they_are_published(value, error, shown):

@@ -1,6 +1,7 @@
 """The page of a study that lacks most of what a report can show: whole HTML, and a line for what is not there."""
 
 import json
+import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from itertools import pairwise
@@ -68,11 +69,14 @@ def test_what_is_missing_is_said_in_a_line(page):
     assert set(charts) == {"distance", "exponents"}
 
 
-def test_the_paper_comes_first_and_every_statement_has_its_place(poor):
-    page = Page(render(poor.study, replace(poor.sources, claims=CLAIMS), []))
+def test_three_sections_stand_open_and_every_statement_has_its_place(poor):
+    html = render(poor.study, replace(poor.sources, claims=CLAIMS), [])
+    page = Page(html)
     sections = [attributes["id"] for tag, attributes in page.elements if tag == "section"]
-    assert sections[:7] == ["summary", "model", "distance", "run", "attractors", "sections", "orbits"]
-    assert sections[7] == "verdicts"
+    assert sections[:5] == ["distance", "run", "numbers", "verdicts", "model"]
+    folded = re.findall(r'<section id="([\w-]+)"[^>]*>\s*<details class="fold', html)
+    assert folded == sections[4:]
+    assert not any("open" in attributes for tag, attributes in page.elements if tag == "details")
     assert [*MEANINGS] == [*SIGNS]
     assert "History‑dependent synchronization" in page.whole_text
     assert PAPER in [attributes["href"] for tag, attributes in page.elements if tag == "a"]
@@ -88,11 +92,11 @@ def test_the_main_claims_are_quoted_with_their_verdicts(poor, tmp_path):
         record["name"] = name
     (tmp_path / "claims.json").write_text(json.dumps(content))
     text = Page(render(poor.study, replace(poor.sources, claims=tmp_path / "claims.json"))).whole_text
-    opening = text[text.index("independent statements") : text.index("is the time average")]
-    places = [
-        opening.index(f"{SIGNS[record['verdict']]} {record['verdict']} {record['statement'][:6]}") for record in chosen
-    ]
+    opening = text[text.index("main claims") : text.index("Verdicts by topic")]
+    places = [opening.index(f"The paper: {record['statement'][:6]}") for record in chosen]
     assert places == sorted(places)
+    for record in chosen:
+        assert f"{SIGNS[record['verdict']]} {record['verdict']}" in opening
 
 
 def test_every_main_claim_is_one_of_the_paper():
@@ -124,9 +128,11 @@ def test_a_failed_run_has_its_file_and_command(page):
 
 
 def test_texts_of_others_are_escaped(page):
-    assert "It </script><img src=x onerror=alert(1)>." in page.text
-    for text in ("Sec. <b onclick=x>1</b>", "<i onmouseover=x>rate</i>", "<u onfocus=x>any</u>"):
-        assert text in page.text
+    for text in (
+        "It </script><img src=x onerror=alert(1)>.",
+        *("Sec. <b onclick=x>1</b>", "<i onmouseover=x>rate</i>", "<u onfocus=x>any</u>"),
+    ):
+        assert text in page.whole_text
     forbidden = {"onerror", "onclick", "onmouseover", "onfocus"}
     assert all(not forbidden & set(attributes) for _, attributes in page.elements)
 

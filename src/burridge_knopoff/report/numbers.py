@@ -9,9 +9,9 @@ from typing import Any
 
 from markupsafe import Markup
 
-from burridge_knopoff.study.formatting import text, with_error
+from burridge_knopoff.study.formatting import MINUS, text, with_error
 
-#: A number below this, without an error, is one of the order of rounding errors.
+#: A number below this is one of the order of rounding errors.
 ROUNDING = 1e-9
 
 #: Significant digits of a measured number without an error.
@@ -51,8 +51,11 @@ def with_powers_of_ten(words: str) -> str:
     return _EXPONENT.sub(power, words)
 
 
-def format_measured(value: Any, error: Any = None) -> str:
-    """Format a measured number with its error; without one, with DIGITS digits, and a rounding error with one digit."""
-    if error is None and isinstance(value, float) and abs(value) < 10.0**DIGITS:
-        value = float(f"{value:.{1 if abs(value) < ROUNDING else DIGITS}g}")
+def format_measured(value: Any, error: Any = None, digits: int = DIGITS) -> str:
+    """Format a measured number with its error, or without one with so many digits; at the level of rounding it is 0."""
+    if isinstance(value, float) and math.isfinite(value):
+        if max(abs(value), error or 0.0) < ROUNDING:
+            return "0"
+        if error is None and abs(value) < 10.0**digits:
+            return with_powers_of_ten(f"{value:.{digits}g}".replace("-", MINUS))
     return with_powers_of_ten(with_error(value, error))

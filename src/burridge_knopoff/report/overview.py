@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import platform
+import re
 from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
@@ -11,9 +12,11 @@ import numpy as np
 import xarray
 import yaml
 
+from burridge_knopoff.figures.sketch import WHOLE
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.initial import PAPER_V, PaperState
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.provenance.record import git_commit
 from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.study.formatting import format_count, text
@@ -27,23 +30,66 @@ LIBRARIES = (
 
 #: The conventions of a study in words, by the values of the keys `contact` and `start`.
 CONTACTS = {
-    "one_sided": "one-sided contact (a stuck block never slips backward)",
-    "symmetric": "symmetric contact (a stuck block slips backward if the force on it is large enough)",
+    "one_sided": "one-sided (a stuck block never slips backward)",
+    "symmetric": "symmetric (a stuck block slips backward if the force on it is large enough)",
 }
 STARTS = {
-    "moving": "every block slips at τ = 0",
-    "tested": "a block sticks at τ = 0 if static friction can hold it",
+    "moving": "moving (every block slips at τ = 0)",
+    "tested": "tested (a block sticks at τ = 0 if static friction can hold it)",
 }
 
 
 def conventions(contact: str, start: str) -> str:
     """Describe the convention of contact and start."""
-    return f"{CONTACTS[contact]}; {STARTS[start]}"
+    return f"contact {CONTACTS[contact]}, start {STARTS[start]}"
 
 
 def convention(setting: Mapping[str, Any]) -> str:
     """Describe the setting of the verdicts: v, contact and start; empty for a study without verdicts."""
     return f"v = {text(setting['v'])}; {conventions(setting['contact'], setting['start'])}" if setting else ""
+
+
+def convention_words(name: str) -> str:
+    """Return a convention by its name in a verdict, `contact, start`, in words; the name of a reading as it is."""
+    contact, _, start = name.partition(", ")
+    return f"{contact} contact, {start} start" if contact in CONTACTS and start in STARTS else name
+
+
+def explanations(words: str, study: Study) -> list[str]:
+    """Explain terms of verdicts and of runs in sentences, those that stand in these words."""
+    longest = MotionSettings(**study.config["motion"]).scaled_to_velocity(study.config["v"]).longest_period
+    terms = {
+        r"one_sided|symmetric, (moving|tested)": f"Contact: {'; '.join(CONTACTS.values())}.",
+        r", (moving|tested)\b|\b(other|moving|tested) start\b": f"Start: {'; '.join(STARTS.values())}.",
+        "quasiperiodic": f"Quasiperiodic: no repetition was found within {text(longest)} time units.",
+    }
+    return [sentence for pattern, sentence in terms.items() if re.search(pattern, words)]
+
+
+def sketch_caption(study: Study) -> str:
+    """Return what the picture of the chain of this study shows."""
+    chain = study.chain
+    sentences = ["The chain of the study."]
+    if chain.blocks == 1:
+        sentences.append("A spring connects the block to a driver that moves with velocity v.")
+    elif chain.is_network:
+        sentences.append("Springs connect blocks to a driver that moves with velocity v.")
+        sentences.append("The springs between the blocks are not drawn.")
+    else:
+        sentences.append(
+            "Springs couple neighbouring blocks, and others connect blocks to a driver that moves with velocity v."
+        )
+    sentences.append("The number next to a spring is its stiffness in units of the spring constant k.")
+    sentences.append("U_i is the position of block i.")
+    if np.ptp(chain.thresholds) > 0.0:
+        sentences.append("F is the static friction of a block in units of F(0).")
+    if np.ptp(chain.weakenings) > 0.0:
+        sentences.append("The weakening w of a block is the factor of the slip speed in its friction.")
+    if chain.blocks > WHOLE:
+        sentences.append("Only the first two blocks and the last are drawn.")
+    if np.any(chain.damping) or np.any(chain.pulling_damping):
+        sentences.append("Dashpots are not drawn.")
+    return " ".join([*sentences, "Compare the paper's Fig. 1."])
 
 
 def opening(study: Study) -> str:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import base64
 import zlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,6 @@ from burridge_knopoff.report.runs import Commands, embedded_runs, unclear_runs
 from burridge_knopoff.report.stages import read_stages
 from burridge_knopoff.report.trajectories import embedded_trajectories
 from burridge_knopoff.report.verdicts import MEANINGS, SIGNS, Verdicts, read_verdicts
-from burridge_knopoff.study.formatting import text
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.agreement import digest
 from burridge_knopoff.summaries.bifurcation_diagram import NEVER_UPWARD
@@ -32,7 +32,7 @@ from burridge_knopoff.summaries.bifurcation_diagram import NEVER_UPWARD
 FOLDER = Path(__file__).parent
 
 #: The scripts of the page, in the order in which they are joined: they share one scope.
-SCRIPTS = ("data", "theme", "charts", "blocks", "runs", "pictures", "claims", "start")
+SCRIPTS = ("data", "theme", "charts", "blocks", "runs", "pictures", "claims", "address", "start")
 
 #: Figures with a place in another section than that of the further figures.
 PLACED = (
@@ -76,6 +76,8 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
     summaries = {name: open_summary(path) for name, path in sources.summaries.items()}
     # One after another: compressing each takes about 100 MB.
     pictures = {name: read_picture(path) for name, path in sources.figures.items()}
+    if "sketch" in pictures:
+        pictures["sketch"] = replace(pictures["sketch"], caption=overview.sketch_caption(study))
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(FOLDER / "templates"),
         autoescape=True,
@@ -83,7 +85,11 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
-    environment.filters.update(number=text, prose=prose)
+    environment.filters.update(
+        prose=prose,
+        convention_words=overview.convention_words,
+        explanations=partial(overview.explanations, study=study),
+    )
     environment.globals.update(format_measured=format_measured)
     drawn = charts(study, summaries)
     if study.is_plane:

@@ -88,7 +88,9 @@ def _kind_texts(study: Study, agreement: xarray.Dataset, lyapunov: xarray.Datase
     settings = MotionSettings(**study.config["motion"]).scaled_to_velocity(study.config["v"])
     kind, period, points = agreement["kind"].values, agreement["period"].values, lyapunov["section_period"].values
     texts = [
-        format_motion(Motion(MotionKind(code), count, time), settings)
+        format_motion(Motion(MotionKind(code), count, time), settings).replace(
+            "quasiperiodic within", "quasiperiodic: no repetition was found within"
+        )
         for code, count, time in zip(kind.flat, points.flat, period.flat, strict=True)
     ]
     return np.array(texts, dtype=object).reshape(kind.shape).tolist()

@@ -5,11 +5,10 @@ from __future__ import annotations
 from enum import IntEnum
 from typing import Any
 
-import numpy as np
 import xarray
 
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
-from burridge_knopoff.report.numbers import ROUNDING, format_measured, with_powers_of_ten
+from burridge_knopoff.report.numbers import format_measured
 from burridge_knopoff.study.formatting import span, text
 from burridge_knopoff.summaries.branch_rows import branch_rows
 from burridge_knopoff.summaries.map_rows import map_rows
@@ -24,7 +23,7 @@ def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
             "branch": row.name,
             "range": span(text(row.a[0]), text(row.a[-1])),
             "values": f"{len(row.a)} of {row.of}",
-            "distance": span(*("0" if value < ROUNDING else f"{value:.4f}" for value in row.distance)),
+            "distance": span(*map(format_measured, row.distance)),
             "kinds": row.kinds,
             "fraction": f"{row.fraction[0]:.3f} (a = {text(row.fraction[1])})" if row.fraction else "–",
         }
@@ -38,13 +37,12 @@ def transition_table(orbits: xarray.Dataset) -> dict[str, Any]:
         return {}
     laws = [str(law) for law in orbits["law"].values]
 
-    def row(name: str, value: str, error: str = "", digits: int = 10) -> dict[str, Any]:
-        cells = []
-        for law in laws:
-            part = orbits.sel(law=law)
-            number = part[value].item()
-            cells.append(format_measured(number, part[error].item()) if error else _rounded(number, digits))
-        return {"name": name, "cells": cells}
+    def row(name: str, value: str, error: str = "") -> dict[str, Any]:
+        parts = [orbits.sel(law=law) for law in laws]
+        return {
+            "name": name,
+            "cells": [format_measured(part[value].item(), part[error].item() if error else None, 10) for part in parts],
+        }
 
     kinds = [_meaning(BifurcationKind(orbits.sel(law=law)["bifurcation_kind"].item())) for law in laws]
     sides = [_meaning(BifurcationSide(orbits.sel(law=law)["bifurcation_side"].item())) for law in laws]
@@ -60,14 +58,9 @@ def transition_table(orbits: xarray.Dataset) -> dict[str, Any]:
             row("a at which a mirror-symmetric multiplier reaches −1", "symmetric_period_doubling_a"),
             row("exponent of |x_1 − x_3| against a − a_c", "amplitude_exponent", "amplitude_exponent_error"),
             row("coefficient of this power law", "amplitude_coefficient", "amplitude_coefficient_error"),
-            # Of the order of rounding errors if there is no hysteresis.
-            row("largest difference of |x_1 − x_3| between rising and falling a", "hysteresis", digits=1),
+            row("largest difference of |x_1 − x_3| between rising and falling a", "hysteresis"),
         ],
     }
-
-
-def _rounded(value: float, digits: int) -> str:
-    return text(value) if not np.isfinite(value) else with_powers_of_ten(f"{value:.{digits}g}".replace("-", "−"))
 
 
 def _meaning(item: IntEnum) -> str:

@@ -11,6 +11,7 @@ from burridge_knopoff.claims.comparison import compare
 from burridge_knopoff.claims.formats import count_sentence, group_by_topic, group_untestable, topic_title
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, READING, UNDECIDED
 from burridge_knopoff.provenance.bad_file import BadFile
+from burridge_knopoff.report.findings import finding
 
 #: Every verdict with a sign, so that the page does not distinguish them by colour alone.
 SIGNS = {HOLDS: "✓", LOOSELY: "≈", CONVENTION: "⇄", READING: "◇", FAILS: "✗", UNDECIDED: "?", NOT_TESTABLE: "–"}
@@ -38,7 +39,7 @@ class Verdicts:
 
     counts : {verdict: number of statements}, every verdict in the order of SIGNS
     independent : the same for statements that neither repeat nor follow from others
-    main : the paper's main claims, each a mapping as in the file
+    main : the paper's main claims, each a mapping as in the file, with what was found in a sentence as `finding`
     topics : {title of a topic: its claims}; only claims that can be judged
     untestable : {reason: claims that cannot be judged for this reason}
     numbers : the paper's numbers beside the study's, see `compare`
@@ -76,6 +77,7 @@ def read_verdicts(path: str | Path | None) -> Verdicts:
         claims, counts, independent = (content.pop(key) for key in ("claims", "counts", "independent_counts"))
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise BadFile(path, f"is not a file of verdicts ({type(error).__name__}: {error})") from None
+    claims = [{**claim, "finding": finding(claim)} for claim in claims]
     main = [claim for name in MAIN for claim in claims if claim["name"] == name]
     topics = {topic_title(topic): of_topic for topic, of_topic in group_by_topic(claims).items()}
     return Verdicts(counts, independent, main, topics, group_untestable(claims), compare(claims), content)

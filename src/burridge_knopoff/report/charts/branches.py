@@ -7,7 +7,7 @@ import plotly.graph_objects as go
 import xarray
 
 from burridge_knopoff.attractors.lookup import branch_names
-from burridge_knopoff.figures.branches import OTHERS, branch_colors, named_colors
+from burridge_knopoff.figures.branches import OTHERS, branch_colors
 from burridge_knopoff.figures.palette import OTHER_BRANCHES, STATE_MARKERS
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.report.charts.legend import Entry
@@ -21,36 +21,80 @@ _SHAPES = (
 )  # fmt: skip
 
 
+#: A chart shows at most so many branches by name, with all others as one of them.
+MOST = 8
+
+
 class Branches:
-    """Names, colours and marks of the branches of attractors: those of small basins are one group."""
+    """Names, colours and marks of the branches of attractors in the chart of one law.
 
-    def __init__(self, attractors: xarray.Dataset) -> None:
-        self.colors = branch_colors(attractors)
+    Those with the most marks have a name, all others are one group.
+    """
+
+    def __init__(self, attractors: xarray.Dataset, law: str) -> None:
+        self.attractors = attractors.sel(law=law)
         self.names = branch_names(attractors)
-        self.groups = named_colors(self.colors, self.names)
+        self.colors = branch_colors(attractors)
+        self._hues = [number for number, color in sorted(self.colors.items()) if color != OTHER_BRANCHES]
+        numbers, counts = np.unique(self.attractors["branch"].values, return_counts=True)
+        marks = {number: count for number, count in zip(numbers.tolist(), counts.tolist(), strict=True) if number >= 0}
+        shown = sorted((number for number in marks if number in self._hues), key=lambda number: -marks[number])
+        if len(marks) > min(len(shown), MOST):
+            shown = shown[: MOST - 1]
+        #: {name: numbers of the branches} of what is drawn.
+        self.groups = {self.names[number]: [number] for number in sorted(shown)}
+        if others := [number for number in marks if number not in shown]:
+            self.groups[OTHERS] = others
 
-    def group(self, number: int) -> str:
-        """Return the name of the group of a branch."""
-        return OTHERS if self.colors[number] == OTHER_BRANCHES else self.names[number]
-
-    def shape(self, group: str) -> str:
-        """Return the mark of a group."""
-        return "x" if group == OTHERS else _SHAPES[list(self.groups).index(group) % len(_SHAPES)]
+    def _look(self, group: str) -> tuple[str, str]:
+        """Return colour and mark of a group, the same in the charts of all laws."""
+        number = self.groups[group][0]
+        if group == OTHERS:
+            return OTHER_BRANCHES, "x"
+        return self.colors[number], _SHAPES[self._hues.index(number) % len(_SHAPES)]
 
     def legend(self) -> list[Entry]:
         """Return the entries of all groups."""
-        return [Entry(name, color, self.shape(name)) for name, color in self.groups.items()]
+        return [Entry(name, *self._look(name)) for name in self.groups]
+
+    def marks(self) -> list[go.Scatter]:
+        """Return ⟨J⟩ of the attractors, a trace for each group, which the page shows if it is asked to."""
+        numbers, mean, kinds = (self.attractors[name].values for name in ("branch", "mean_distance", "kind"))
+        a = np.broadcast_to(self.attractors["a"].values[:, None], numbers.shape)
+        traces = []
+        for group, members in self.groups.items():
+            there = np.isin(numbers, members)
+            color, shape = self._look(group)
+            marks = zip(numbers[there].tolist(), kinds[there].tolist(), mean[there].tolist(), strict=True)
+            traces.append(
+                scatter(
+                    a[there],
+                    mean[there],
+                    color,
+                    "attractor: %{customdata[0]}<br>a = %{x}<br>⟨J⟩ = %{customdata[1]}",
+                    mode="markers",
+                    meta="branch",
+                    visible=False,
+                    # The name of the synchronized branch is its kind of motion.
+                    customdata=[
+                        [", ".join(dict.fromkeys((self.names[number], MotionKind(kind).words))), format_measured(value)]
+                        for number, kind, value in marks
+                    ],
+                    marker={"symbol": shape, "size": 8, "opacity": 0.6},
+                )
+            )
+        return traces
 
 
-def run_legend(states: list[str]) -> list[Entry]:
-    """Return the entries of the runs, of the run that is picked, and of a_c."""
+def run_legend(states: list[str], critical: bool) -> list[Entry]:
+    """Return the entries of the runs, of the run that is picked, and of a_c if there is one."""
     runs = [Entry(f"run from {name}", INK["text"], _run_shape(n)) for n, name in enumerate(states)]
     picked = Entry("the run shown under One run", INK["focus"], "circle-open")
-    return [*runs, picked, Entry("loss of synchrony, a_c", INK["muted"], "dot")]
+    return [*runs, picked, *([Entry("loss of synchrony, a_c", INK["muted"], "dot")] if critical else [])]
 
 
 def _run_shape(number: int) -> str:
-    return SYMBOLS[STATE_MARKERS[number % len(STATE_MARKERS)]] + "-open"
+    return SYMBOLS[STATE_MARKERS[number % len(STATE_MARKERS)]] + ("-open" if number else "")
 
 
 def distance(
@@ -59,7 +103,7 @@ def distance(
     """Return ⟨J⟩ of the runs of one law, with three standard errors, over that of its attractors.
 
     kind : of the motion of each run; top : end of the axis of ⟨J⟩; critical : a_c of the synchronized orbit, NaN if
-        there is none; attractors : as of `attractor_marks`
+        there is none; attractors : as of `Branches.marks`
 
     The page puts the run that is picked into the last trace.
     """
@@ -101,31 +145,3 @@ def top_distance(runs: xarray.Dataset, attractors: xarray.Dataset | None) -> flo
     largest = means[np.isfinite(means)].max(initial=0.0)
     # Where all is 0, rounding sets the scale of nothing.
     return float(largest) if largest > 1e-9 else 0.01
-
-
-def attractor_marks(attractors: xarray.Dataset, branches: Branches) -> list[go.Scatter]:
-    """Return ⟨J⟩ of the attractors of one law, a trace for each group of branches."""
-    numbers, mean, kinds = (attractors[name].values for name in ("branch", "mean_distance", "kind"))
-    a = np.broadcast_to(attractors["a"].values[:, None], numbers.shape)
-    traces = []
-    for group, color in branches.groups.items():
-        there = np.isin(numbers, [number for number in branches.colors if branches.group(number) == group])
-        if not there.any():
-            continue
-        marks = zip(numbers[there].tolist(), kinds[there].tolist(), mean[there].tolist(), strict=True)
-        traces.append(
-            scatter(
-                a[there],
-                mean[there],
-                color,
-                "attractor: %{customdata[0]}<br>a = %{x}<br>⟨J⟩ = %{customdata[1]}",
-                mode="markers",
-                # The name of the synchronized branch is its kind of motion.
-                customdata=[
-                    [", ".join(dict.fromkeys((branches.names[number], MotionKind(kind).words))), format_measured(value)]
-                    for number, kind, value in marks
-                ],
-                marker={"symbol": branches.shape(group), "size": 8, "opacity": 0.6},
-            )
-        )
-    return traces

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 import xarray
 
 from burridge_knopoff.figures.lyapunov import frame
@@ -39,20 +40,16 @@ def charts(study: Study, summaries: Mapping[str, xarray.Dataset]) -> Charts:
     runs, compared, lyapunov = (summaries[name] for name in ("mean_distance", "agreement", "lyapunov"))
     kind, attractors = compared["kind"], summaries.get("attractors")
     depth = lyapunov["lyapunov_exponent"].shape[-1]
-    legends: dict[str, Any] = {
-        "runs": branches.run_legend(list(states)),
-        "kinds": exponents.kind_legend(kind.values, depth),
-        "branches": [],
-    }
-    marks: dict[str, list[Any]] = {law: [] for law in laws}
-    if attractors is not None:
-        groups = branches.Branches(attractors)
-        legends["branches"] = groups.legend()
-        marks = {law: branches.attractor_marks(attractors.sel(law=law), groups) for law in laws}
+    legends: dict[str, Any] = {"kinds": exponents.kind_legend(kind.values, depth)}
+    groups = [branches.Branches(attractors, law) for law in laws] if attractors is not None else []
+    legends["branches"] = [group.legend() for group in groups]
+    marks = [group.marks() for group in groups] or [[]] * len(laws)
     top = branches.top_distance(runs, attractors)
-    critical = dict(zip(laws, summaries["orbits"]["critical_a"].sel(law=list(laws)).values.tolist(), strict=True))
+    critical = summaries["orbits"]["critical_a"].sel(law=list(laws)).values.tolist()
+    legends["runs"] = branches.run_legend(list(states), bool(np.isfinite(critical).any()))
     packed["distance"] = [
-        pack(branches.distance(runs.sel(law=law), kind.sel(law=law), top, critical[law], marks[law])) for law in laws
+        pack(branches.distance(runs.sel(law=law), kind.sel(law=law), top, *of_law))
+        for law, *of_law in zip(laws, critical, marks, strict=True)
     ]
     a = runs["a"].values
     edges, counts = sections.section_counts(summaries["bifurcation_diagram"])

@@ -40,6 +40,8 @@ function loadLibrary() {
 
 /** Draw one chart; if this fails, pictures take the place of all charts. */
 async function draw(box) {
+  // In a closed fold a chart has no size: it is drawn when the fold opens.
+  if (!box.offsetWidth) return;
   try {
     await loadLibrary();
     const { data: traces, layout } = await figureOf(box);
@@ -84,4 +86,6 @@ function startCharts() {
     }
   }, { rootMargin: "400px" });
   document.querySelectorAll(".chart").forEach((box) => watcher.observe(box));
+  document.querySelectorAll("details").forEach((fold) => fold.addEventListener("toggle", () =>
+    fold.querySelectorAll(".chart").forEach((box) => { if (drawn.has(box)) draw(box); })));
 }

@@ -8,4 +8,5 @@ if (document.documentElement.classList.contains("js")) {
   startPictures();
   startClaims();
   startCharts();
+  startAddress();
 }
