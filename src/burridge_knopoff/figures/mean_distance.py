@@ -12,15 +12,17 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.figures.branches import branch_colors, named_colors
-from burridge_knopoff.figures.palette import state_symbol
+from burridge_knopoff.figures.palette import UNDETERMINED, state_symbol
 from burridge_knopoff.figures.style import (
     begin_at_zero,
     draw_strips,
     label_panels,
     legend_below,
+    legend_inside,
     page_width,
     say,
     show_all,
@@ -47,7 +49,7 @@ def draw(
 
     A column for each law. Above: coloured points are attractors, black symbols are runs with three standard errors;
     runs that did not complete are left out. Below: a row for each initial state and convention of contact and start, in
-    the colour of the branch that it reaches; white is undetermined.
+    the colour of the branch that it reaches; black is undetermined.
 
     orbits : the summary of the synchronized orbit; without it, a_c is not marked
     attractors : without them, only the runs are drawn
@@ -59,7 +61,6 @@ def draw(
         1 + len(strips), len(laws), sharex=True, sharey="row", squeeze=False, height_ratios=[2.6, *strips]
     )
     colors = {} if attractors is None else branch_colors(attractors)
-    marked: dict[str, Artist] = {}
     for column, law in enumerate(laws):
         if attractors is not None:
             draw_attractors(panels[0, column], attractors.sel(law=law), "a", colors, 6.0)
@@ -72,25 +73,26 @@ def draw(
         for index, initial in enumerate(runs["initial"].values):
             draw_runs(panels[0, column], runs.sel(initial=initial), "a", **state_symbol(index, size))
         if orbits is not None and np.isfinite(critical := orbits["critical_a"].sel(law=law).item()):
-            look = {"color": "0.4", "linestyle": ":", "linewidth": 0.9}
-            marked["a_c"] = panels[0, column].axvline(critical, zorder=0, label="$a_c$", **look)
+            panels[0, column].axvline(critical, zorder=0, color="0.4", linestyle=":", linewidth=0.9)
+            top, look = ("data", "axes fraction"), {"textcoords": "offset points", "va": "top", "fontsize": 8.0}
+            panels[0, column].annotate("$a_c$", (critical, 1.0), (3, -3), xycoords=top, **look)
         panels[-1, column].set_xlabel("$a$")
     panels[0, 0].set_ylabel(r"$\langle J\rangle$")
     if strips:
         panels[1, 0].set_ylabel("initial state,\ncontact, start", fontsize=7.0)
     begin_at_zero(panels[0, 0])
     show_all(panels[0, 0], mean_distance["a"].values)
-    legend_below(
-        figure,
-        [
-            *(
-                Line2D([], [], label=f"run from {name}", **state_symbol(n))
-                for n, name in enumerate(mean_distance["initial"].values)
-            ),
-            *marked.values(),
-        ],
-        branch_handles(colors, {} if attractors is None else branch_names(attractors)),
-    )
+    states = mean_distance["initial"].values
+    symbols: list[Artist] = [
+        Line2D([], [], label=f"run from {name}", **state_symbol(n)) for n, name in enumerate(states)
+    ]
+    if attractors is None:
+        legend_below(figure, symbols)
+    else:
+        if (attractors["initial_branch"] < 0).any():
+            symbols.append(Patch(facecolor=UNDETERMINED, label="undetermined"))
+        legend_inside(panels[0, 0], symbols)
+        legend_below(figure, branch_handles(colors, branch_names(attractors)))
     label_panels(
         panels.flat, [*(f"{law} law" for law in laws), *(f"{law} law: branch reached" for law in laws)][: panels.size]
     )
@@ -133,8 +135,8 @@ def _label_constant_friction(panel: Axes, runs: xarray.Dataset) -> None:
 
 def _conventions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -> None:
     names, reached = branches_reached(attractors)
-    picture = np.ones((*reached.shape, 3))
-    for branch, color in colors.items():
+    picture = np.zeros((*reached.shape, 3))
+    for branch, color in {**colors, -1: UNDETERMINED}.items():
         picture[reached == branch] = to_rgb(color)
     draw_strips(panel, attractors["a"].values, picture)
     panel.set_yticks(np.arange(len(names)) + 0.5, names, fontsize=6.5)

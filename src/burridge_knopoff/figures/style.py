@@ -41,6 +41,9 @@ STRIP = 0.025
 # Largest number of panels side by side, where each initial state has a panel.
 ACROSS = 3
 
+#: Most entries of a legend.
+MOST_ENTRIES = 8
+
 # Typical number of letters of a title in an inch.
 LETTERS = 17
 
@@ -216,6 +219,13 @@ def legend_below(figure: Figure | SubFigure, *groups: Sequence[Artist]) -> None:
         if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
             return
         legend.remove()
+
+
+def legend_inside(panel: Axes, handles: Sequence[Artist]) -> None:
+    """Put a small legend where it covers the least of a panel, in a frame that tells its symbols from points."""
+    if handles:
+        look: Any = {"frameon": True, "fancybox": False, "edgecolor": "0.7", "fontsize": 7.0, "handlelength": 1.5}
+        panel.legend(handles=handles, **look).get_frame().set_linewidth(0.5)
 
 
 def _padded(handles: Sequence[Artist], columns: int) -> list[Artist]:
