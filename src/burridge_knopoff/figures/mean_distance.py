@@ -24,6 +24,7 @@ from burridge_knopoff.figures.style import (
     legend_below,
     legend_inside,
     page_width,
+    panel_table,
     say,
     show_all,
     styled,
@@ -47,19 +48,18 @@ def draw(
 ) -> Figure:
     """Draw ⟨J⟩(a) of the runs over the branches of attractors, and the branch that each initial state reaches.
 
-    A column for each law. Above: coloured points are attractors, black symbols are runs with three standard errors;
-    runs that did not complete are left out. Below: a row for each initial state and convention of contact and start, in
-    the colour of the branch that it reaches; black is undetermined.
+    A panel for each law, with a second one if there are attractors. Above: coloured points are attractors, black
+    symbols are runs with three standard errors; runs that did not complete are left out. Below: a row for each initial
+    state and convention of contact and start, in the colour of the branch that it reaches; black is undetermined.
 
     orbits : the summary of the synchronized orbit; without it, a_c is not marked
     attractors : without them, only the runs are drawn
     """
     laws = mean_distance["law"].values
-    strips = [] if attractors is None else [0.13 * attractors["initial_branch"].isel(law=0, a=0).size + 0.2]
-    figure = Figure(figsize=(page_width(len(laws)), 3.4 + sum(strips)), layout="constrained")
-    panels = figure.subplots(
-        1 + len(strips), len(laws), sharex=True, sharey="row", squeeze=False, height_ratios=[2.6, *strips]
-    )
+    if attractors is None:
+        figure, panels = panel_table(2.1, len(laws), "$a$", [r"$\langle J\rangle$"])
+    else:
+        figure, panels = _with_strips(len(laws), attractors["initial_branch"].isel(law=0, a=0).size)
     colors = {} if attractors is None else branch_colors(attractors)
     for column, law in enumerate(laws):
         if attractors is not None:
@@ -76,10 +76,6 @@ def draw(
             panels[0, column].axvline(critical, zorder=0, color="0.4", linestyle=":", linewidth=0.9)
             top, look = ("data", "axes fraction"), {"textcoords": "offset points", "va": "top", "fontsize": 8.0}
             panels[0, column].annotate("$a_c$", (critical, 1.0), (3, -3), xycoords=top, **look)
-        panels[-1, column].set_xlabel("$a$")
-    panels[0, 0].set_ylabel(r"$\langle J\rangle$")
-    if strips:
-        panels[1, 0].set_ylabel("initial state,\ncontact, start", fontsize=7.0)
     begin_at_zero(panels[0, 0])
     show_all(panels[0, 0], mean_distance["a"].values)
     states = mean_distance["initial"].values
@@ -97,6 +93,18 @@ def draw(
         panels.flat, [*(f"{law} law" for law in laws), *(f"{law} law: branch reached" for law in laws)][: panels.size]
     )
     return figure
+
+
+def _with_strips(laws: int, rows: int) -> tuple[Figure, np.ndarray]:
+    """Return a figure with a column for each law, and its panels, of which the lower have a number of rows."""
+    height = 0.13 * rows + 0.2
+    figure = Figure(figsize=(page_width(laws), 3.4 + height), layout="constrained")
+    panels = figure.subplots(2, laws, sharex=True, sharey="row", squeeze=False, height_ratios=[2.6, height])
+    for panel in panels[1]:
+        panel.set_xlabel("$a$")
+    panels[0, 0].set_ylabel(r"$\langle J\rangle$")
+    panels[1, 0].set_ylabel("initial state,\ncontact, start", fontsize=7.0)
+    return figure, panels
 
 
 def draw_attractors(

@@ -135,14 +135,18 @@ def panel_table(
 ) -> tuple[Figure, np.ndarray]:
     """Return a figure and its panels, shape (len(ys), columns); a row that does not fit continues in the next line.
 
+    One or two panels stand one above the other, in the width of a journal column.
+
     height : of a panel in inches, with its title
     x, ys : axis labels: one for all columns, and one for each row
     """
-    across = min(columns, ACROSS)
+    narrow = columns * len(ys) <= 2
+    across = 1 if narrow else min(columns, ACROSS)
     lines = -(-columns // across)
     count = len(ys) * lines
     empty = np.arange(count * across).reshape(len(ys), -1)[:, columns:].ravel().tolist()
-    figure, panels = new_figure(page_width(across), 0.6 + height * count, count, across, share_rows=False, empty=empty)
+    width = COLUMN if narrow else page_width(across)
+    figure, panels = new_figure(width, 0.6 + height * count, count, across, share_rows=False, empty=empty)
     table = np.reshape(np.array(panels, dtype=object), (len(ys), columns))
     for row, y in zip(table, ys, strict=True):
         for number, panel in enumerate(row):
