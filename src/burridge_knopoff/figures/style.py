@@ -229,7 +229,7 @@ def legend_inside(panel: Axes, handles: Sequence[Artist]) -> None:
     """Put a small legend where it covers the least of a panel, in a frame that tells its symbols from points."""
     if handles:
         look: Any = {"frameon": True, "fancybox": False, "edgecolor": "0.7", "fontsize": 7.0, "handlelength": 1.5}
-        panel.legend(handles=handles, **look).get_frame().set_linewidth(0.5)
+        panel.legend(handles=handles, loc="best", **look).get_frame().set_linewidth(0.5)
 
 
 def _padded(handles: Sequence[Artist], columns: int) -> list[Artist]:
