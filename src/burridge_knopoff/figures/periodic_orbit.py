@@ -65,5 +65,5 @@ def _phase_planes(panel: Axes, point: xarray.Dataset, factor: float) -> None:
     """Draw U_i' versus U_i − vτ of every block; factor : of the widths of all lines."""
     for index, (x, y) in enumerate(zip(point["position"].values.T, point["velocity"].values.T, strict=True)):
         panel.plot(x, y, color=block_color(index), linewidth=factor * WIDTHS[index % len(WIDTHS)])
-    panel.set_xlabel(r"$U_i-v\tau$")
+    panel.set(xlabel=r"$U_i-v\tau$", ylabel="$U_i$′")
     panel.locator_params(axis="x", nbins=6)
