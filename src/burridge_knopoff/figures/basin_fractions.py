@@ -47,7 +47,7 @@ def draw(attractors: xarray.Dataset) -> Figure:
     are 95 % Wilson intervals.
     """
     laws = attractors["law"].values
-    figure, panels = new_figure(page_width(len(laws)), 5.2, rows=2, columns=len(laws))
+    figure, panels = new_figure(page_width(len(laws)), 4.8, rows=2, columns=len(laws))
     colors = branch_colors(attractors)
     for column, law in enumerate(laws):
         part = attractors.sel(law=law)

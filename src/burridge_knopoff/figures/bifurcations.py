@@ -62,7 +62,7 @@ def draw(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> Figure:
     laws = [str(law) for law in attractors["law"].values]
     rows = 2 + _covers_route(attractors, bifurcations)
     heights = [3.0, 1.3, 2.6][:rows]
-    figure = Figure(figsize=(page_width(len(laws)), 1.2 + sum(heights)), layout="constrained")
+    figure = Figure(figsize=(page_width(len(laws)), 0.9 + sum(heights)), layout="constrained")
     panels = figure.subplots(rows, len(laws), sharey="row", squeeze=False, height_ratios=heights)
     colors = branch_colors(attractors)
     for number, column in enumerate(panels.T):

@@ -37,7 +37,7 @@ def draw(attractors: xarray.Dataset) -> Figure:
     """
     (parameter,) = (str(name) for name in attractors["branch"].dims if name not in ("law", "attractor"))
     laws, colors = np.atleast_1d(constant(attractors, "law")), branch_colors(attractors)
-    figure, panels = new_figure(page_width(len(laws)), 5.2, rows=2, columns=len(laws))
+    figure, panels = new_figure(page_width(len(laws)), 4.8, rows=2, columns=len(laws))
     for column, law in enumerate(laws):
         above, below = panels[column], panels[len(laws) + column]
         part = attractors.sel(law=law) if "law" in attractors.dims else attractors

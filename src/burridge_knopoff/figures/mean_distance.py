@@ -98,7 +98,7 @@ def draw(
 def _with_strips(laws: int, rows: int) -> tuple[Figure, np.ndarray]:
     """Return a figure with a column for each law, and its panels, of which the lower have a number of rows."""
     height = 0.13 * rows + 0.2
-    figure = Figure(figsize=(page_width(laws), 3.4 + height), layout="constrained")
+    figure = Figure(figsize=(page_width(laws), 3.2 + height), layout="constrained")
     panels = figure.subplots(2, laws, sharex=True, sharey="row", squeeze=False, height_ratios=[2.6, height])
     for panel in panels[1]:
         panel.set_xlabel("$a$")
