@@ -40,7 +40,7 @@ run = simulate("stribeck", 0.1, "plus", transient=20, window=50)
 run.to_dataset().to_netcdf("run.nc")
 assert sweep("nonlinear", [0.1, 0.2], transient=20, window=50).sizes["a"] == 2
 maps = basin_map("linearized", 0.08, pixels=2, samples=4, transient=500, window=500)
-write_figure(basin_figure.draw(*maps, {"plus": (0.989, -0.991)}), "basins.png")
+write_figure(basin_figure.draw(maps[0], {"plus": (0.989, -0.991)}), "basins.png")
 """
 
 

@@ -37,3 +37,18 @@ def test_points_of_a_cloud_are_small_and_those_of_a_period_are_large():
     velocity = np.append(np.tile([0.1, 0.3], 50) + 1e-9 * np.arange(100), np.linspace(0.1, 0.3, 100))
     assert dense_values(a, velocity).tolist() == [0.2]
     assert dense_values(a[:0], velocity[:0]).tolist() == []
+
+
+def test_the_lowest_velocity_that_runs_share_is_that_of_blocks_at_rest():
+    """At −Nv all blocks stick; a lowest velocity of each run of its own is not said to be that."""
+    downward = runs().assign(crossing_direction=lambda data: -data["crossing_direction"])
+    at_rest = downward.assign(crossing_velocity=("crossing", np.full(len(downward["crossing"]), -0.3)))
+    for data, section, words in (
+        (at_rest, "sum", "all blocks stick"),
+        (at_rest, "block=2", "the block sticks"),
+        (downward.assign(crossing_velocity=-downward["crossing_velocity"]), "sum", None),
+    ):
+        (panel,) = draw(data.assign_attrs(section=section).assign(status=("point", [0, 0]))).axes
+        said = [text for text in panel.texts if "stick" in text.get_text()]
+        assert [text.get_text().partition(":")[0] for text in said] == ([words] if words else [])
+        assert all(text.xy[1] == -0.3 for text in said)

@@ -1,20 +1,20 @@
-"""Bifurcations: one that is not located is drawn as the range of a in which it lies."""
+"""Bifurcations: how many there are of each type, and where."""
 
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib.colors import to_hex
 
 from burridge_knopoff.continuation.branch_changes import Change
-from burridge_knopoff.figures.bifurcations import draw
+from burridge_knopoff.figures.bifurcations import BINS, draw
 from burridge_knopoff.figures.branches import branch_colors
 from burridge_knopoff.figures.palette import BRANCHES, OTHER_BRANCHES
+from burridge_knopoff.figures.style import MOST_ENTRIES
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 
 EDGE = ("law", "a", "a_error", "mean_distance", "kind", "change", "from_branch", "to_branch")
 
 
-def test_a_bifurcation_that_is_not_located_is_as_wide_as_its_error():
+def test_bifurcations_are_counted_in_parts_of_the_range_of_a():
     names = ("law", "a", "attractor")
     attractors = xr.Dataset(
         {name: (names, np.ones((1, 2, 1), dtype=int)) for name in ("branch", "basin_count", "mean_distance")},
@@ -33,10 +33,13 @@ def test_a_bifurcation_that_is_not_located_is_as_wide_as_its_error():
     bifurcation |= {"change": int(Change.END), "from_branch": 1, "to_branch": -1}
     bifurcations = xr.Dataset({**none, **{name: ("bifurcation", [value]) for name, value in bifurcation.items()}})
     panel, rows = draw(attractors, bifurcations).axes
-    (bar,) = rows.patches
-    assert (bar.get_x(), bar.get_width()) == pytest.approx((0.13, 0.02))
-    assert to_hex(bar.get_facecolor()).upper() == branch_colors(attractors)[1]
-    assert rows.get_yticklabels()[round(bar.get_y() + 0.4)].get_text() == "crisis"
+    (count,) = rows.texts
+    row = [label.get_text() for label in rows.get_yticklabels()].index("crisis")
+    assert count.get_text() == "1"
+    assert count.get_position() == pytest.approx((0.1 + 6.5 * 0.1 / BINS, row))
+    shade = rows.collections[0].get_array()
+    assert shade.shape == (len(rows.get_yticks()), BINS)
+    assert np.argwhere(shade).tolist() == [[row, 6]]
     left, right = panel.get_xlim()
     assert left < 0.1 < 0.2 < right
 
@@ -94,4 +97,5 @@ def test_the_legend_names_all_branches_that_are_drawn():
     # Some have the colour that branches of small basins share.
     named = {f"motion ({n})" for n, color in branch_colors(attractors).items() if color != OTHER_BRANCHES}
     assert len(named) < count
-    assert words - {""} == {"stable orbits", *named, "other branches"}
+    assert words - {""} == {*named, "other branches"}
+    assert len(words - {""}) == MOST_ENTRIES

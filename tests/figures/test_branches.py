@@ -1,10 +1,11 @@
-"""Colours of branches: those that most states reach have one of their own, the same in every file."""
+"""Colours of branches: those that fill a picture have one of their own, the same in every file."""
 
 import numpy as np
 import xarray as xr
 
-from burridge_knopoff.figures.branches import branch_colors, map_colors, map_parts
+from burridge_knopoff.figures.branches import OTHERS, branch_colors, largest_parts, map_parts, named_colors
 from burridge_knopoff.figures.palette import BRANCHES, OTHER_BRANCHES
+from burridge_knopoff.figures.style import MOST_ENTRIES
 
 NAMES = ("branch", "basin_count")
 SAMPLES = 100
@@ -22,12 +23,33 @@ def attractors(values, reached=0):
     return xr.Dataset(data | {"sample_count": (("law", "a"), np.full((1, len(grid)), SAMPLES))})
 
 
-def test_branches_at_few_values_share_a_colour():
-    count = len(BRANCHES) + 3
-    colors = branch_colors(attractors({number: number + 1 for number in range(count)}))
-    assert [number for number, color in colors.items() if color == OTHER_BRANCHES] == [3, 2, 1]
-    assert colors[0] == BRANCHES[0]
-    assert len(set(colors.values())) == len(BRANCHES) + 1
+def grey(colors):
+    return sorted(number for number, color in colors.items() if color == OTHER_BRANCHES)
+
+
+def test_the_branches_that_fill_the_least_share_the_last_entry_of_a_legend():
+    fill = {"a": 3.0, "b": 1.0, "c": 2.0, "d": 9.0}
+    assert largest_parts(fill, 4) == ["d", "a", "c", "b"]
+    assert largest_parts(fill, 3) == ["d", "a"]
+
+
+def test_a_legend_of_branches_has_at_most_eight_entries():
+    """Of many branches that all exist equally long, those that more states reach have colours of their own."""
+    count = 12
+    colors = branch_colors(attractors(dict.fromkeys(range(count), 5), {n: n for n in range(count)}))
+    assert grey(colors) == [0, 1, 2, 3, 4]
+    assert list(named_colors(colors, {n: str(n) for n in range(count)})) == [*map(str, range(5, count)), OTHERS]
+    # As many as entries: none is grey.
+    assert not grey(branch_colors(attractors(dict.fromkeys(range(MOST_ENTRIES), 5), 1)))
+
+
+def test_a_branch_fills_what_its_basins_fill_at_all_values_together():
+    """A basin of half of the states at one value fills less than one of a fifth at three values."""
+    large = dict.fromkeys(range(6), 10)
+    values, reached = {**large, 7: 3, 8: 1, 9: 1}, {**dict.fromkeys(large, 90), 7: 20, 8: 50, 9: 1}
+    assert grey(branch_colors(attractors(values, reached))) == [8, 9]
+    # Where no states were sampled, the number of values counts.
+    assert grey(branch_colors(attractors({**values, 8: 4}, 0))) == [7, 9]
 
 
 def test_files_with_more_or_fewer_branches_agree_on_the_colours_of_the_first():
@@ -39,40 +61,27 @@ def test_files_with_more_or_fewer_branches_agree_on_the_colours_of_the_first():
     assert [colors[number] for number in (2, 15, 16)] == [BRANCHES[place] for place in (2, 3, 4)]
 
 
-def test_the_branch_of_nearly_all_states_at_one_value_has_a_colour():
-    """And one of few states at all values, together more of them, is grey."""
-    count = len(BRANCHES) + 1
-    colors = branch_colors(
-        attractors(
-            {number: 1 if number == 2 else 40 for number in range(count)},
-            {**dict.fromkeys(range(count), 20), 2: 90, 5: 6},
-        )
-    )
-    assert colors[2] == BRANCHES[2]
-    assert [number for number, color in colors.items() if color == OTHER_BRANCHES] == [5]
+def maps(pixels, sides=None):
+    """Return one map of basins with so many pixels of each branch, {branch: pixels}."""
+    branch = np.repeat([*pixels], [*pixels.values()])
+    side = np.zeros_like(branch) if sides is None else np.array(sides)
+    names = {n: f"alternating ({n})" for n in pixels if n >= 0}
+    data = {name: (("map", "pixel"), values[None]) for name, values in {"branch": branch, "side": side}.items()}
+    return xr.Dataset(data | {"branch_number": ("number", [*names]), "branch_name": ("number", [*names.values()])})
 
 
-def test_a_large_basin_at_few_values_has_a_colour_before_a_small_one_at_many():
-    count = len(BRANCHES) + 1
-    colors = branch_colors(attractors({number: 10 - (number == 2) for number in range(count)}, {2: 90, 4: 5, 5: 6}))
-    assert colors[2] == BRANCHES[2]
-    assert [number for number, color in colors.items() if color == OTHER_BRANCHES] == [count - 1]
-
-
-def test_a_map_has_the_colours_of_the_other_figures_and_distinguishes_grey_branches():
-    dataset = attractors({number: 20 - number for number in range(len(BRANCHES) + 3)})
-    hues = branch_colors(dataset)
-    grey = [number for number, color in hues.items() if color == OTHER_BRANCHES]
-    colors = map_colors(branch_colors(dataset), [-1, 0, 3, *grey])
-    assert sorted(colors) == [0, 3, *grey]
-    assert {number: colors[number] for number in (0, 3)} == {number: hues[number] for number in (0, 3)}
-    assert len(set(colors.values())) == 2 + len(grey)
+def test_a_map_names_at_most_eight_parts_and_each_pixel_belongs_to_one():
+    parts = map_parts(maps({-1: 1, **{n: 1 + n for n in range(12)}}))
+    assert [part.name for part in parts] == [*(f"alternating ({n})" for n in range(6, 12)), OTHERS, "undetermined"]
+    assert (np.sum([part.members for part in parts], axis=0) == 1).all()
+    assert len({part.color for part in parts}) == MOST_ENTRIES
+    # A branch has the colour that it has in the other figures.
+    assert parts[0].color == BRANCHES[6]
 
 
 def test_the_name_of_one_of_two_mirror_images_says_that_the_symmetry_is_broken():
     """A branch has the name of most of its attractors; at some a its motion may be one of a mirror pair."""
-    pixels = xr.Dataset({name: ("pixel", values) for name, values in {"branch": [7, 7, 7], "side": [0, 1, -1]}.items()})
-    parts = map_parts(pixels, {7: BRANCHES[2]}, {7: "alternating (7)"})
+    parts = map_parts(maps({7: 3}, [0, 1, -1]))
     assert [part.name for part in parts] == [
         "alternating, symmetry broken (7+)",
         "alternating (7)",

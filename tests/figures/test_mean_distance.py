@@ -81,11 +81,12 @@ def test_no_line_joins_runs_and_a_c_is_marked_where_there_is_one():
     assert len(second.get_lines()) == 1
 
 
-def test_the_branch_reached_is_coloured_and_an_undetermined_one_is_white(attractors):
+def test_the_branch_reached_is_coloured_an_undetermined_one_black_and_a_gap_white(attractors):
     strips = draw(means(np.zeros((2, 1, 3))), attractors=attractors).axes[2]
     # Three values of a, with gaps between their strips.
-    picture = strips.collections[0].get_array()[:, ::2]
-    assert picture.shape == (4, 3, 3)
-    assert np.allclose(picture[0, 1], to_rgb(branch_colors(attractors)[1]))
-    assert (picture[0, 0] == 1.0).all()
-    assert (picture[1:] == 1.0).all()
+    picture = strips.collections[0].get_array()
+    assert picture.shape == (4, 5, 3)
+    assert np.allclose(picture[0, 2], to_rgb(branch_colors(attractors)[1]))
+    assert (picture[:, 1::2] == 1.0).all()
+    assert (picture[0, 0] == 0.0).all()
+    assert (picture[1:, ::2] == 0.0).all()

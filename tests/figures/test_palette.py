@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from burridge_knopoff.figures.palette import BRANCHES, KINDS, OTHER_BRANCHES, UNDETERMINED, pale
+from burridge_knopoff.figures.palette import BRANCHES, KINDS, OTHER_BRANCHES, UNDETERMINED, light
 
 VISIONS = {
     "normal": np.eye(3),
@@ -76,10 +76,15 @@ def test_any_two_kinds_of_motion_differ(vision):
 
 @pytest.mark.parametrize("vision", VISIONS)
 def test_two_mirror_images_differ(vision):
-    """From one another, and the branches of the default study with mirror pairs from those that they touch in maps."""
-    assert all(least_difference([color, pale(color)], vision) >= LEAST for color in BRANCHES[:8])
-    touching = [BRANCHES[1], BRANCHES[3], pale(BRANCHES[3]), BRANCHES[4], pale(BRANCHES[4])]
-    assert least_difference(touching, vision) >= LEAST
+    assert all(least_difference([color, light(color)], vision) >= LEAST for color in BRANCHES[:13])
+
+
+@pytest.mark.parametrize("vision", VISIONS)
+def test_the_parts_of_the_default_map_of_mirror_pairs_differ_most_where_they_fill_most(vision):
+    """At a = 0.15, both images of branch 3 and branch 1 fill it; both images of branch 4 lie between them."""
+    most, all_parts = [BRANCHES[1], BRANCHES[3], light(BRANCHES[3])], [BRANCHES[4], light(BRANCHES[4])]
+    assert least_difference(most, vision) >= 2.3 * LEAST
+    assert least_difference([*most, *all_parts], vision) >= 1.8 * LEAST
 
 
 def test_the_first_branches_and_the_kinds_that_touch_differ_in_print_without_colour():

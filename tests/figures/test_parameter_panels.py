@@ -51,13 +51,15 @@ def test_a_map_has_the_first_parameter_to_the_right_and_the_second_upward(tmp_pa
 
 
 def test_a_map_has_each_value_at_its_place_and_ends_at_the_data():
-    v = [0.01, 0.02, 0.05, 0.2]
+    a, v = [0.1, 0.3, 0.4], [0.01, 0.02, 0.05, 0.2]
     for module in (grid_distance, grid_kinds, grid_exponents):
-        drawn = maps(module.draw(summary(a=A, v=v)))[0]
+        drawn = maps(module.draw(summary(a=a, v=v)))[0]
         edges = drawn.get_coordinates()
-        assert edges[0, :, 0].tolist() == pytest.approx([0.1, 0.15, 0.3, 0.4])
-        assert edges[:, 0, 1].tolist() == pytest.approx([0.01, 0.015, 0.035, 0.125, 0.2])
+        assert edges[0, :, 0].tolist() == pytest.approx([0.1, 0.2, 0.35, 0.4])
+        # Unequal steps of v are equal ratios.
+        assert edges[:, 0, 1].tolist() == pytest.approx([0.01, *np.sqrt([0.0002, 0.001, 0.01]), 0.2])
         assert (*drawn.axes.get_xlim(), *drawn.axes.get_ylim()) == pytest.approx((0.1, 0.4, 0.01, 0.2))
+        assert (drawn.axes.get_xscale(), drawn.axes.get_yscale()) == ("linear", "log")
 
 
 @pytest.mark.parametrize(
@@ -126,7 +128,7 @@ def test_exponents_that_were_not_computed_are_said_to_be_none(tmp_path):
 
 @pytest.mark.parametrize(
     ("count", "of_law", "across"),
-    [(1, 1, 1), (2, 1, 2), (2, 2, 2), (3, 1, 3), (4, 2, 2), (6, 3, 3), (8, 4, 2), (9, 9, 3), (10, 5, 2), (5, 5, 3)],
+    [(1, 1, 1), (2, 1, 1), (2, 2, 1), (3, 1, 3), (4, 2, 2), (6, 3, 3), (8, 4, 2), (9, 9, 3), (10, 5, 2), (5, 5, 3)],
 )
 def test_panels_of_a_law_are_side_by_side_or_none_hangs_alone(count, of_law, across):
     assert panels_across(count, of_law) == across

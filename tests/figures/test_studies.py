@@ -7,7 +7,7 @@ import pytest
 
 from burridge_knopoff.dataset.point import to_dataset
 from burridge_knopoff.figures.description import figure_descriptions
-from burridge_knopoff.figures.style import write_figure
+from burridge_knopoff.figures.style import MOST_ENTRIES, write_figure
 from burridge_knopoff.running.simulation import run
 from tests.small_study import ALL_STUDIES
 
@@ -42,6 +42,8 @@ def test_every_figure_is_drawn_and_names_all_laws(small, tmp_path: Path):
     for name, figure in drawn.items():
         write_figure(figure, tmp_path / f"{name}.png")
         assert (tmp_path / f"{name}.png").stat().st_size > 5_000, name
+        for legend in [*figure.legends, *filter(None, (panel.get_legend() for panel in figure.axes))]:
+            assert sum(bool(text.get_text().strip()) for text in legend.get_texts()) <= MOST_ENTRIES, name
         if name in ("mean_distance", "bifurcation_diagram", "lyapunov", "basin_fractions", "solvers"):
             titles = " ".join(panel.get_title(loc="left") for panel in figure.axes).replace("\n", " ")
             assert all(f"{law} law" in titles for law in small.study.laws), name

@@ -9,6 +9,7 @@ from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.style import (
     ACROSS,
+    COLUMN,
     STRIP,
     begin_at_zero,
     cells,
@@ -159,8 +160,18 @@ def test_a_table_of_any_number_of_panels_is_drawn_with_its_labels_aligned(column
     figure.draw_without_rendering()
     assert len(figure.axes) == rows * columns
     left = [panel.yaxis.label.get_window_extent().x1 for panel in figure.axes if panel.get_ylabel()]
-    assert len(left) == rows * -(-columns // ACROSS)
+    assert len(left) == rows * (columns if rows * columns <= 2 else -(-columns // ACROSS))
     assert left == pytest.approx([left[0]] * len(left), abs=0.5)
+
+
+def test_two_panels_stand_one_above_the_other_in_the_width_of_a_journal_column():
+    for columns, rows in ((2, 1), (1, 2)):
+        figure, table = panel_table(1.0, columns, "x", ["one", "two"][:rows])
+        upper, lower = table.flat
+        assert figure.get_figwidth() == COLUMN
+        assert upper.get_position().y0 > lower.get_position().y1
+        assert upper.get_position().x0 == lower.get_position().x0
+        assert (upper.get_xlabel(), lower.get_xlabel()) == ("", "x")
 
 
 def test_a_row_of_many_panels_goes_on_in_the_next_line():

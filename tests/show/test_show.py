@@ -174,8 +174,8 @@ def test_summaries_of_two_studies_are_not_drawn_together(small_studies, tmp_path
     checksum = open_summary(tmp_path / "attractors.nc").attrs["checksum"]
     for other, code in ((checksum, 0), ("0" * 64, 2)):
         inputs = json.dumps({"summary/attractors.nc": other})
-        write_summary(summaries["basins"].assign_attrs(inputs=inputs), tmp_path / "basins.nc")
-        said = output_of(capsys, tmp_path / "basins.nc", "--plot", tmp_path / "basins.png", code=code)
+        write_summary(summaries["bifurcations"].assign_attrs(inputs=inputs), tmp_path / "bifurcations.nc")
+        said = output_of(capsys, tmp_path / "bifurcations.nc", "--plot", tmp_path / "bifurcations.png", code=code)
         assert (f"but {tmp_path / 'attractors.nc'} is of another study" in said) == (code == 2)
 
 

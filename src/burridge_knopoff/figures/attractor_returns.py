@@ -14,7 +14,7 @@ from burridge_knopoff.attractors.labels import UNDETERMINED
 from burridge_knopoff.basins.edge_state import EdgeState
 from burridge_knopoff.figures.branches import ranked_colors
 from burridge_knopoff.figures.model_words import model_title
-from burridge_knopoff.figures.palette import pale
+from burridge_knopoff.figures.palette import BRANCHES, pale
 from burridge_knopoff.figures.single_panel import draw_panel, widen_constant_axes
 from burridge_knopoff.figures.style import say
 from burridge_knopoff.model.model import Model
@@ -49,7 +49,7 @@ def _colors(attractors: Sequence[Attractor]) -> list[str]:
     """Return the colour of each attractor, as of the branches of a study, pale for the second of a mirror pair."""
     first = [min(k, attractor.partner) for k, attractor in enumerate(attractors)]
     others = [k for k in dict.fromkeys(first) if attractors[k].motion.kind not in SYNCHRONOUS]
-    colors = ranked_colors(range(1 + len(others)))
+    colors = ranked_colors(dict.fromkeys(range(1 + len(others)), 1.0), len(BRANCHES))
     hues = [colors[1 + others.index(k) if k in others else 0] for k in first]
     return [hue if k == index else pale(hue) for index, (k, hue) in enumerate(zip(first, hues, strict=True))]
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 import xarray
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
@@ -16,6 +17,7 @@ from burridge_knopoff.figures.style import (
     label_panels,
     legend_below,
     legend_entries,
+    legend_inside,
     new_figure,
     page_width,
     say,
@@ -29,7 +31,7 @@ CATEGORY = "Attractors"
 INPUTS = ("attractors",)
 CAPTION = """\
 Top: the fraction of sampled initial states that reach each branch of attractors, versus a, with 95 % Wilson intervals
-(bands or bars). Branches that few states reach at any a are counted together. Crosses show the fraction of
+(bands or bars). Branches that the fewest states reach, over all a, are counted together. Crosses show the fraction of
 undetermined states. Bottom: ⟨J⟩ of the attractor followed while a is raised (filled) or lowered (open) in small steps;
 where they differ, there is hysteresis.
 """
@@ -45,7 +47,7 @@ def draw(attractors: xarray.Dataset) -> Figure:
     are 95 % Wilson intervals.
     """
     laws = attractors["law"].values
-    figure, panels = new_figure(page_width(len(laws)), 5.2, rows=2, columns=len(laws))
+    figure, panels = new_figure(page_width(len(laws)), 4.8, rows=2, columns=len(laws))
     colors = branch_colors(attractors)
     for column, law in enumerate(laws):
         part = attractors.sel(law=law)
@@ -55,12 +57,10 @@ def draw(attractors: xarray.Dataset) -> Figure:
     panels[0].set_ylabel("fraction of initial states")
     panels[0].set_ylim(-0.02, 1.02)
     panels[len(laws)].set_ylabel(r"$\langle J\rangle$ along a sweep")
-    (shares, names), (paths, _) = (legend_entries(row) for row in (panels[: len(laws)], panels[len(laws) :]))
-    order = [*named_colors(colors, branch_names(attractors)), UNDETERMINED_STATES]
-    shares = [handle for _, handle in sorted(zip(names, shares, strict=True), key=lambda pair: order.index(pair[0]))]
-    if shares:
-        shares.append(interval_handle())
-    legend_below(figure, shares, paths)
+    entries = dict(zip(*reversed(legend_entries(panels[: len(laws)])), strict=True))
+    legend_below(figure, [entries[name] for name in named_colors(colors, branch_names(attractors)) if name in entries])
+    legend_inside(panels[0], fraction_handles(panels[: len(laws)]))
+    legend_inside(panels[len(laws)], legend_entries(panels[len(laws) :])[0])
     titles = [f"{law} law: {quantity}" for quantity in ("basin fractions", "sweeps of $a$") for law in laws]
     label_panels(panels, titles)
     return figure
@@ -85,9 +85,11 @@ def draw_fractions(panel: Axes, attractors: xarray.Dataset, parameter: str, colo
     panel.plot(a, undetermined_share(attractors), "kx", markersize=3.5, markeredgewidth=0.8, label=UNDETERMINED_STATES)
 
 
-def interval_handle() -> Patch:
-    """Return the legend entry of the intervals."""
-    return Patch(facecolor="0.8", edgecolor="none", label="95 % interval")
+def fraction_handles(panels: Iterable[Axes]) -> list[Artist]:
+    """Return the legend entries of undetermined states and of the intervals in panels with fractions."""
+    handles, names = legend_entries(panels)
+    undetermined = [handle for handle, name in zip(handles, names, strict=True) if name == UNDETERMINED_STATES]
+    return [*undetermined, Patch(facecolor="0.8", edgecolor="none", label="95 % interval")] if handles else []
 
 
 def _sweeps(panel: Axes, attractors: xarray.Dataset) -> None:

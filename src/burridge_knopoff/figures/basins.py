@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray
@@ -13,21 +13,20 @@ from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike
 
-from burridge_knopoff.attractors.lookup import branch_names
-from burridge_knopoff.figures.branches import branch_colors, map_colors, map_parts, ranked_colors
+from burridge_knopoff.figures.branches import MapPart, map_parts
 from burridge_knopoff.figures.model_words import fixed_numbers
 from burridge_knopoff.figures.single_panel import draw_panel
 from burridge_knopoff.figures.style import COLUMN, PAGE, StyledFigure, label_panels, legend_below, styled
 
 TITLE = "Basins of attraction"
 CATEGORY = "Attractors"
-INPUTS = ("basins", "attractors")
+INPUTS = ("basins",)
 FROM_STUDY = ("marked_states",)
 CAPTION = """\
 Basins of attraction in the plane of the initial positions U_1(0) and U_N(0) of the end blocks, or, for one block, of
-its initial position and velocity. Each pixel has the colour of the branch that its state reaches. Where the motions of
-a branch are mirror images of each other, its number has + or −, and − has a lighter shade. The study's initial states
-in this plane are marked with their names.
+its initial position and velocity. Each pixel has the colour of the branch that its state reaches; branches with the
+fewest pixels share a colour. Where the motions of a branch are mirror images of each other, its number has + or −, and
+− has a light shade. The study's initial states in this plane are marked with their names.
 """
 
 COLUMNS = 2
@@ -37,28 +36,25 @@ LETTERS = 14
 
 
 @styled
-def draw(basins: xarray.Dataset, attractors: xarray.Dataset | None, marked_states: Mapping[str, ArrayLike]) -> Figure:
-    """Draw each map in the colours of the branches reached: mirror images in a lighter shade, undetermined in black.
+def draw(basins: xarray.Dataset, marked_states: Mapping[str, ArrayLike]) -> Figure:
+    """Draw each map in the colours of the branches reached: mirror images in a light shade, undetermined in black.
 
-    attractors : without them, the branches are ranked by their pixels for the colours
     marked_states : coordinates, by name, of the initial states in the plane of the maps, shape (2,), or (maps, 2)
         if they differ between maps
     """
     count = basins.sizes["map"]
-    columns = min(COLUMNS, count)
+    columns = COLUMNS if count > COLUMNS else 1
     rows = -(-count // columns)
     figure = StyledFigure(figsize=(PAGE if columns > 1 else COLUMN, 3.2 * rows + 0.5), layout="constrained")
     panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-    colors, marks = _colors(basins, attractors), _marks_inside(basins, marked_states)
+    parts, marks = map_parts(basins), _marks_inside(basins, marked_states)
     titles = []
-    patches: dict[tuple[int, int], Patch] = {}
     for number, panel in enumerate(panels.flat):
         if number >= count:
             panel.set_axis_off()
             continue
-        basin_map = basins.isel(map=number)
-        titles.append(_title(basin_map))
-        patches |= _map(panel, basin_map, colors)
+        titles.append(_title(basins.isel(map=number)))
+        _map(panel, basins, parts, number)
         for name, points in marks.items():
             _mark(panel, name, points[number], _extent(basins))
         if number < count - columns:
@@ -67,36 +63,28 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset | None, marked_state
             panel.tick_params(labelbottom=True)
         if number % columns:
             panel.set_ylabel("")
-    legend_below(figure, _in_order(patches))
+    legend_below(
+        figure, [Patch(facecolor=part.color, edgecolor="0.3", linewidth=0.4, label=part.name) for part in parts]
+    )
     label_panels(list(panels.flat)[:count], titles, LETTERS)
     return figure
 
 
-def draw_single(
-    basins: xarray.Dataset,
-    attractors: xarray.Dataset | None,
-    marked_states: Mapping[str, ArrayLike],
-    axes: Axes | None = None,
-) -> Figure:
+def draw_single(basins: xarray.Dataset, marked_states: Mapping[str, ArrayLike], axes: Axes | None = None) -> Figure:
     """Draw a single map as `draw` does, into axes if there are any."""
     if axes is None:
-        return draw(basins, attractors, marked_states)
-    basin_map, colors = basins.isel(map=0), _colors(basins, attractors)
+        return draw(basins, marked_states)
 
     def draw_into(panel: Axes) -> str:
-        for patch in _in_order(_map(panel, basin_map, colors)):
-            panel.plot([], [], "s", color=patch.get_facecolor(), markeredgecolor="0.3", label=patch.get_label())
+        parts = map_parts(basins)
+        _map(panel, basins, parts, 0)
+        for part in parts:
+            panel.plot([], [], "s", color=part.color, markeredgecolor="0.3", label=part.name)
         for name, points in _marks_inside(basins, marked_states).items():
             _mark(panel, name, points[0], _extent(basins))
-        return _title(basin_map)
+        return _title(basins.isel(map=0))
 
     return draw_panel(draw_into, axes)
-
-
-def _colors(basins: xarray.Dataset, attractors: xarray.Dataset | None) -> dict[int, str]:
-    branches, pixels = np.unique(basins["branch"].values, return_counts=True)
-    ranked = ranked_colors(branches[np.argsort(-pixels, kind="stable")].tolist())
-    return map_colors(ranked if attractors is None else branch_colors(attractors), branches.tolist())
 
 
 def _marks_inside(basins: xarray.Dataset, marked_states: Mapping[str, ArrayLike]) -> dict[str, np.ndarray]:
@@ -105,10 +93,6 @@ def _marks_inside(basins: xarray.Dataset, marked_states: Mapping[str, ArrayLike]
     left, right, bottom, top = _extent(basins)
     low, high = (left, bottom), (right, top)
     return {name: points for name, points in marks.items() if ((points >= low) & (points <= high)).all()}
-
-
-def _in_order(patches: Mapping[tuple[int, int], Patch]) -> list[Patch]:
-    return [patches[key] for key in sorted(patches, key=lambda key: (key[0] < 0, *key))]
 
 
 def _extent(basins: xarray.Dataset) -> tuple[float, float, float, float]:
@@ -120,18 +104,15 @@ def _title(basin_map: xarray.Dataset) -> str:
     return ", ".join([f"{basin_map['law'].item()} law", *fixed_numbers(basin_map)])
 
 
-def _map(panel: Axes, basin_map: xarray.Dataset, colors: Mapping[int, str]) -> dict[tuple[int, int], Patch]:
-    """Draw one map with its axis labels, and return the legend entry of each part by branch and side, + before −."""
-    picture = np.zeros((*basin_map["branch"].shape, 3))
-    patches = {}
-    for part in map_parts(basin_map, colors, branch_names(basin_map)):
-        picture[part.members] = to_rgb(part.color)
-        patches[part.branch, -part.side] = Patch(facecolor=part.color, edgecolor="0.3", linewidth=0.4, label=part.name)
-    panel.imshow(picture, origin="lower", extent=_extent(basin_map), interpolation="nearest", aspect="auto")
+def _map(panel: Axes, basins: xarray.Dataset, parts: Sequence[MapPart], number: int) -> None:
+    """Draw the map of a number, with its axis labels."""
+    picture = np.zeros((*basins["branch"].shape[1:], 3))
+    for part in parts:
+        picture[part.members[number]] = to_rgb(part.color)
+    panel.imshow(picture, origin="lower", extent=_extent(basins), interpolation="nearest", aspect="auto")
     panel.set_box_aspect(1.0)
-    blocks = np.size(basin_map.attrs["plane_position"])
+    blocks = np.size(basins.attrs["plane_position"])
     panel.set(xlabel="$U_1(0)$", ylabel=f"$U_{{{blocks}}}(0)$" if blocks > 1 else "$U_1'(0)$")
-    return patches
 
 
 def _mark(panel: Axes, name: str, point: np.ndarray, extent: tuple[float, ...]) -> None:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import xarray
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.attractors.lookup import CROSSINGS
@@ -26,17 +27,19 @@ INPUTS = ("bifurcation_diagram",)
 CAPTION = """\
 Section points W' on the section W = 0 versus a, for each law and initial state: upward crossings have W' > 0, downward
 crossings W' < 0. W is the sum of the positions relative to uniform sliding, or the position of one block if the config
-sets `section`. At W' = −Nv (−0.3 for three blocks at v = 0.1), with W of all N blocks, all of them stick at the
-crossing. Points are larger where a run has only a few. Crossings slower than 10⁻⁹ are rounding errors of uniform
+sets `section`. Dotted: W' = −Nv, with W of all N blocks, where all of them stick at the crossing. Points are larger
+where a run has only a few. Crossings slower than 10⁻⁹ are rounding errors of uniform
 sliding and are left out, as are all crossings of runs that did not complete. At a = 0 the paper's laws are constant:
 free oscillations neither grow nor decay, and their several frequencies give a band.
 """
 
 # With more values of a than this, the points of a cloud are drawn small, to resolve it; with fewer, large.
 FEW = 30
+# Section points of different runs are equal, at the foot, if they differ by less.
+EQUAL = 1e-9
 # A run with at most so many different section points has no cloud, and its points are drawn large.
 DISTINCT = 24
-SMALL, LARGE = 1.2, 2.6
+SMALL, LARGE = 1.8, 3.2
 
 
 @styled
@@ -65,9 +68,26 @@ def draw(bifurcation: xarray.Dataset) -> Figure:
             # In uniform sliding, only rounding crosses the section.
             empty = STAYS if upward[0].size else NEVER_UPWARD
             say(panel, empty if has_completed(bifurcation, law, state).any() else NONE_COMPLETED)
+        _mark_foot(panel, *last_downward, str(bifurcation.attrs.get("section", "sum")))
         titles.append(f"{state}, {law} law")
     label_panels(panels, titles)
     return figure
+
+
+def _mark_foot(panel: Axes, a: np.ndarray, velocity: np.ndarray, section: str) -> None:
+    """Say that blocks stick at the lowest W', if runs at several values of a share it: none is slower than at rest.
+
+    section : "sum", or "block=" and the number of a block
+    """
+    foot = velocity.min(initial=0.0)
+    if len(np.unique(a[velocity <= foot + EQUAL])) < 2:
+        return
+    panel.axhline(foot, color="0.4", linestyle=":", linewidth=0.8, zorder=0)
+    words = r"all blocks stick: $W$′$\,=-Nv$" if section == "sum" else r"the block sticks: $W$′$\,=-v$"
+    look: Any = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "top", "fontsize": 7.5}
+    panel.annotate(words, (0.02, foot), (0, -2), **look)
+    low, high = panel.get_ylim()
+    panel.set_ylim(bottom=min(low, foot - 0.08 * (high - foot)))
 
 
 def dense_values(a: np.ndarray, velocity: np.ndarray) -> np.ndarray:

@@ -18,8 +18,10 @@ from burridge_knopoff.figures.branches import branch_colors, named_colors
 from burridge_knopoff.figures.palette import OTHER_BRANCHES, pale
 from burridge_knopoff.figures.style import (
     begin_at_zero,
+    cells,
     label_panels,
     legend_below,
+    legend_inside,
     page_width,
     say_nothing,
     show_all,
@@ -32,9 +34,10 @@ CATEGORY = "Attractors"
 INPUTS = ("attractors", "bifurcations")
 CAPTION = """\
 Top: ⟨J⟩ of periodic orbits versus a for each law, in the colour of their branch of attractors: solid where stable,
-dashed where unstable and continued a little beyond a bifurcation. Pale points: all attractors. Below: the ends and
-changes of branches, a row for each type, in the colour of the branch that begins, ends or changes. Crises and
-undetermined changes are only known to lie in a range of a, the width of the bar.
+dashed where unstable and continued a little beyond a bifurcation. Pale points: all attractors. Branches that the fewest
+states reach, over all a, share a colour. Below: the number of bifurcations at which branches begin, end or change, in
+fifteen parts of the range of a, a row for each type. Crises and undetermined changes count in the middle of the range
+in which they lie.
 """
 
 MARK: Any = {"color": "black", "markersize": 3.6, "markerfacecolor": "white", "markeredgewidth": 0.7}
@@ -42,6 +45,9 @@ MARK: Any = {"color": "black", "markersize": 3.6, "markerfacecolor": "white", "m
 ORBITS: dict[bool, Any] = {True: {"linewidth": 1.3, "linestyle": "-"}, False: {"linewidth": 0.7, "linestyle": "--"}}
 #: Rows of the middle panels: what is not known comes last. Hopf bifurcations have a row if there are any.
 ROWS = sorted(BifurcationKind, key=lambda kind: kind < 0)
+
+#: Number of parts of the range of a in which bifurcations are counted.
+BINS = 15
 
 #: Ranges of a and ⟨J⟩ in the lower panels.
 ROUTE = ((0.108, 0.182), (0.0412, 0.0488))
@@ -52,11 +58,11 @@ NAMED = 0.01
 
 @styled
 def draw(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> Figure:
-    """Draw ⟨J⟩ of stable and unstable orbits over the attractors, and the bifurcations by type, for each law."""
+    """Draw ⟨J⟩ of stable and unstable orbits over the attractors, and count the bifurcations by type, for each law."""
     laws = [str(law) for law in attractors["law"].values]
     rows = 2 + _covers_route(attractors, bifurcations)
     heights = [3.0, 1.3, 2.6][:rows]
-    figure = Figure(figsize=(page_width(len(laws)), 1.2 + sum(heights)), layout="constrained")
+    figure = Figure(figsize=(page_width(len(laws)), 0.9 + sum(heights)), layout="constrained")
     panels = figure.subplots(rows, len(laws), sharey="row", squeeze=False, height_ratios=heights)
     colors = branch_colors(attractors)
     for number, column in enumerate(panels.T):
@@ -68,7 +74,10 @@ def draw(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> Figure:
         show_all(column[0], attractors["a"].values)
         if (law["branch"] < 0).all():
             say_nothing(column[0], "no attractor was found")
-        _bifurcations(column[1], bifurcations, laws[number], colors, is_first=number == 0)
+        elif number == 0:
+            legend_inside(column[0], orbit_handles(bifurcations["orbit_stable"].values == 1))
+        of_law = bifurcations.isel(bifurcation=bifurcations["law"].values == laws[number])
+        _counts(column[1], attractors["a"].values, of_law, is_first=number == 0)
         column[1].sharex(column[0])
         column[0].tick_params(labelbottom=False)
         for panel in column[2:]:
@@ -83,7 +92,7 @@ def draw(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> Figure:
         panel.set_ylabel(r"$\langle J\rangle$")
     figure.align_ylabels(panels[::2, 0])
     _legend(figure, attractors, bifurcations, colors)
-    contents = ("", ": bifurcations", ": route from period one to chaos")
+    contents = ("", ": number of bifurcations", ": route from period one to chaos")
     label_panels(panels.flat, [f"{law} law{content}" for content in contents[:rows] for law in laws])
     return figure
 
@@ -122,28 +131,32 @@ def draw_branch(panel: Axes, a: np.ndarray, values: np.ndarray, stable: np.ndarr
         panel.plot(a[piece], values[piece], color=color, zorder=1, **ORBITS[bool(stable[first])])
 
 
-def _bifurcations(
-    panel: Axes, bifurcations: xarray.Dataset, law: str, colors: dict[int, str], *, is_first: bool
-) -> None:
-    """Draw each bifurcation into the row of its type: a line where it is located, otherwise its range of a.
+def _counts(panel: Axes, a: np.ndarray, bifurcations: xarray.Dataset, *, is_first: bool) -> None:
+    """Write how many bifurcations of each type lie in each of BINS equal parts of the range of a, shaded by number.
 
+    a : values of the study, ascending
     is_first : whether it is the first panel of its row, which has the symbols next to the names of the types
     """
-    a, error, kind = (bifurcations[name].values for name in ("a", "a_error", "kind"))
-    branch = _branch(bifurcations)
+    kind = bifurcations["kind"].values
     rows = [row for row in ROWS if row != BifurcationKind.HOPF or row in kind]
-    for row, bifurcation in enumerate(rows):
-        for k in np.flatnonzero((bifurcations["law"].values == law) & (kind == bifurcation)):
-            color = colors.get(int(branch[k]), OTHER_BRANCHES)
-            width = 0.0 if bifurcation.mark else 2.0 * error[k]
-            panel.barh(row, width, 0.8, a[k] - 0.5 * width, color=color, edgecolor=color, linewidth=0.6, alpha=0.8)
+    low, high = a[[0, -1]] if len(a) > 1 else cells(a)
+    edges = np.linspace(low, high, BINS + 1)
+    counts = np.array([np.histogram(bifurcations["a"].values[kind == row], edges)[0] for row in rows])
+    # The darkest shade leaves the numbers legible.
+    shade = np.sqrt(counts / max(1, counts.max()))
+    panel.pcolormesh(edges, np.arange(len(rows) + 1) - 0.5, shade, cmap="Greys", vmin=0.0, vmax=2.0)
+    for row, bin_number in np.argwhere(counts).tolist():
+        middle = 0.5 * (edges[bin_number] + edges[bin_number + 1])
+        words = f"{counts[row, bin_number]}"
+        panel.text(middle, row, words, ha="center", va="center_baseline", fontsize=6.5, clip_on=True)
     panel.set_yticks(range(len(rows)), [bifurcation.words for bifurcation in rows], fontsize=7.0)
     panel.tick_params(axis="y", length=0, pad=11)
+    panel.tick_params(axis="x", direction="out", top=False)
     if is_first:
         outside = blended_transform_factory(panel.transAxes, panel.transData)
         for row, bifurcation in enumerate(rows):
             panel.plot(-0.022, row, bifurcation.mark or "None", transform=outside, clip_on=False, **MARK)
-    panel.set_ylim(len(rows) - 0.4, -0.6)
+    panel.set_ylim(len(rows) - 0.5, -0.5)
 
 
 def _branch(bifurcations: xarray.Dataset) -> np.ndarray:
@@ -187,14 +200,8 @@ def _stops(panel: Axes, bifurcations: xarray.Dataset, law: str) -> None:
 def _legend(figure: Figure, attractors: xarray.Dataset, bifurcations: xarray.Dataset, colors: dict[int, str]) -> None:
     numbers = np.unique([*attractors["branch"].values.ravel(), *bifurcations["orbit_branch"].values])
     drawn = {number: colors.get(number, OTHER_BRANCHES) for number in numbers[numbers >= 0].tolist()}
-    handles = [
-        *orbit_handles(bifurcations["orbit_stable"].values == 1),
-        *(
-            Line2D([], [], color=color, linewidth=1.3, label=name)
-            for name, color in named_colors(drawn, branch_names(attractors)).items()
-        ),
-    ]
-    legend_below(figure, handles)
+    names = named_colors(drawn, branch_names(attractors))
+    legend_below(figure, [Line2D([], [], color=color, linewidth=1.3, label=name) for name, color in names.items()])
 
 
 def orbit_handles(stable: np.ndarray) -> list[Line2D]:

@@ -2,56 +2,60 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass
-from itertools import cycle
+from typing import TypeVar
 
 import numpy as np
 import xarray
 
 from burridge_knopoff.attractors.lookup import branch_names, side_name
-from burridge_knopoff.figures.palette import BRANCHES, OTHER_BRANCHES, OTHER_SHADES, UNDETERMINED, pale
+from burridge_knopoff.figures.palette import BRANCHES, OTHER_BRANCHES, UNDETERMINED, light
+from burridge_knopoff.figures.style import MOST_ENTRIES
 from burridge_knopoff.model.sampling import fraction_interval
 
 OTHERS = "other branches"
 
+Part = TypeVar("Part", bound=Hashable)
+
+
+def largest_parts(fill: Mapping[Part, float], most: int) -> list[Part]:
+    """Return the parts of a picture with an entry of their own in a legend of at most `most` entries, largest first.
+
+    fill : how much of the picture each part fills; if there are more parts than entries, those that fill the least
+        share the last entry
+    """
+    ranked = sorted(fill, key=lambda part: -fill[part])
+    return ranked if len(ranked) <= most else ranked[: most - 1]
+
 
 def branch_colors(attractors: xarray.Dataset) -> dict[int, str]:
-    """Return the colour of each branch: its own for branches that hold many states somewhere, otherwise grey.
+    """Return the colour of each branch: its own for those that fill the figures, grey for the others.
 
-    Branches are ranked by the largest basin fraction that they have at any a, under any law. The branch number decides
-    the colour, so that files of one model agree. If two branches would have the same colour, the lower number keeps it
-    and the other branch takes the next free colour.
+    A branch fills as much as its basin fractions at all a, under all laws, together.
     """
     branch, count, samples = (attractors[name].values for name in ("branch", "basin_count", "sample_count"))
     share = count / np.maximum(samples, 1)[..., None]
     # Without sampled states, or for equal fractions, the branch found at more values of a comes first.
-    present = {int(n): branch == n for n in np.unique(branch) if n >= 0}
-    sizes = {
-        n: (float(np.where(where, share, 0.0).sum(axis=-1).max()), int(where.any(axis=-1).sum()))
-        for n, where in present.items()
-    }
-    return ranked_colors(sorted(sizes, key=lambda n: (-sizes[n][0], -sizes[n][1], n)))
+    return ranked_colors({int(n): (share + 1e-9)[branch == n].sum().item() for n in np.unique(branch) if n >= 0})
 
 
-def ranked_colors(branches: Iterable[int]) -> dict[int, str]:
-    """Return the colour of each branch by its number; grey for the last ones, if there are more than colours."""
-    ranked = [*branches]
-    colors = {0: BRANCHES[0]} if 0 in ranked else {}
-    ranked = [number for number in ranked if number > 0]
-    most = len(BRANCHES) - 1
-    free = dict.fromkeys(range(most))
-    for number in sorted(ranked[:most]):
-        place = min(free, key=lambda k: (k - number + 1) % most)
+def ranked_colors(fill: Mapping[int, float], most: int = MOST_ENTRIES) -> dict[int, str]:
+    """Return the colour of each branch by its number, from how much of the picture it fills.
+
+    The branch number decides the colour, so that files of one model agree. If two branches would have the same colour,
+    the lower number keeps it and the other branch takes the next free colour.
+    """
+    colors, count = {}, len(BRANCHES) - 1
+    free = dict.fromkeys(range(count))
+    for number in sorted(largest_parts(fill, most)):
+        if number == 0:
+            colors[0] = BRANCHES[0]
+            continue
+        place = min(free, key=lambda k: (k - number + 1) % count)
         del free[place]
         colors[number] = BRANCHES[1 + place]
-    return colors | dict.fromkeys(ranked[most:], OTHER_BRANCHES)
-
-
-def map_colors(colors: Mapping[int, str], branches: Collection[int]) -> dict[int, str]:
-    """Return the colours of the branches in maps; branches that share a colour have different shades of it."""
-    shades = cycle(OTHER_SHADES)
-    return {n: next(shades) if colors[n] == OTHER_BRANCHES else colors[n] for n in sorted(branches) if n >= 0}
+    return colors | {number: OTHER_BRANCHES for number in fill if number not in colors}
 
 
 def named_colors(colors: Mapping[int, str], names: Mapping[int, str]) -> dict[str, str]:
@@ -91,32 +95,29 @@ def undetermined_share(attractors: xarray.Dataset) -> np.ndarray:
 
 @dataclass(frozen=True)
 class MapPart:
-    """The states of a map that reach one side of a branch; branch −1 is undetermined.
+    """The states of maps of basins that have one colour: they reach one side of a branch, say.
 
-    members : which pixels, of the shape of the map
+    members : which pixels, of the shape of the maps
     """
 
-    branch: int
-    side: int
     name: str
     color: str
     members: np.ndarray
 
 
-def map_parts(basin_map: xarray.Dataset, colors: Mapping[int, str], names: Mapping[int, str]) -> list[MapPart]:
-    """Return the parts of one map of basins: branches in order, the side + before −, undetermined last.
-
-    colors, names : of the branches, as of `map_colors` and `branch_names`
-    """
-    branch, side = basin_map["branch"].values.astype(int), basin_map["side"].values.astype(int)
-    present = set(zip(branch.ravel().tolist(), side.ravel().tolist(), strict=True))
-    return [
-        MapPart(
-            b,
-            s,
-            "undetermined" if b < 0 else side_name(names[b], s),
-            UNDETERMINED if b < 0 else colors[b] if s >= 0 else pale(colors[b]),
-            (branch == b) & (side == s),
-        )
-        for b, s in sorted(present, key=lambda pair: (pair[0] < 0, pair[0], -pair[1]))
+def map_parts(basins: xarray.Dataset) -> list[MapPart]:
+    """Return the parts of maps of basins: branches in order, the side + before −, other branches, undetermined."""
+    names = branch_names(basins.isel(map=0))
+    branch, side = basins["branch"].values.astype(int), basins["side"].values.astype(int)
+    undetermined = branch < 0
+    pairs, pixels = np.unique(np.stack([branch, side])[:, ~undetermined], axis=1, return_counts=True)
+    fill = dict(zip(map(tuple, pairs.T.tolist()), pixels.tolist(), strict=True))
+    shown = sorted(largest_parts(fill, MOST_ENTRIES - int(undetermined.any())), key=lambda pair: (pair[0], -pair[1]))
+    colors = ranked_colors({number: 1.0 for number, _ in shown})
+    parts = [
+        MapPart(side_name(names[b], s), colors[b] if s >= 0 else light(colors[b]), (branch == b) & (side == s))
+        for b, s in shown
     ]
+    others = ~np.any([undetermined, *(part.members for part in parts)], axis=0)
+    last = (MapPart(OTHERS, OTHER_BRANCHES, others), MapPart("undetermined", UNDETERMINED, undetermined))
+    return [*parts, *(part for part in last if part.members.any())]

@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 import xarray
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.continuation.branch_changes import Change
-from burridge_knopoff.figures.basin_fractions import UNDETERMINED_STATES, draw_fractions, interval_handle
+from burridge_knopoff.figures.basin_fractions import draw_fractions, fraction_handles
 from burridge_knopoff.figures.branches import branch_colors
 from burridge_knopoff.figures.mean_distance import branch_handles, draw_attractors
 from burridge_knopoff.figures.model_words import constant, fixed_numbers, symbol
-from burridge_knopoff.figures.single_panel import MOST_ENTRIES, shortened
 from burridge_knopoff.figures.style import (
     SHADE,
     begin_at_zero,
     label_panels,
     legend_below,
-    legend_entries,
+    legend_inside,
     new_figure,
     page_width,
     say,
@@ -39,7 +37,7 @@ def draw(attractors: xarray.Dataset) -> Figure:
     """
     (parameter,) = (str(name) for name in attractors["branch"].dims if name not in ("law", "attractor"))
     laws, colors = np.atleast_1d(constant(attractors, "law")), branch_colors(attractors)
-    figure, panels = new_figure(page_width(len(laws)), 5.2, rows=2, columns=len(laws))
+    figure, panels = new_figure(page_width(len(laws)), 4.8, rows=2, columns=len(laws))
     for column, law in enumerate(laws):
         above, below = panels[column], panels[len(laws) + column]
         part = attractors.sel(law=law) if "law" in attractors.dims else attractors
@@ -53,13 +51,10 @@ def draw(attractors: xarray.Dataset) -> Figure:
     begin_at_zero(panels[0])
     panels[0].set_ylabel(r"$\langle J\rangle$")
     panels[len(laws)].set(ylabel="fraction of initial states", ylim=(-0.02, 1.02))
-    others: list[Artist] = [interval_handle()] if attractors["sample_count"].any() else []
-    shares, names = legend_entries(panels[len(laws) :])
-    others += [handle for handle, name in zip(shares, names, strict=True) if name == UNDETERMINED_STATES]
+    legend_inside(panels[len(laws)], fraction_handles(panels[len(laws) :]))
     if any(panel.patches for panel in panels):
-        others.append(shade_entry("a branch begins or ends"))
-    branches = branch_handles(colors, branch_names(attractors))
-    legend_below(figure, [*shortened(branches, MOST_ENTRIES - len(others)), *others])
+        legend_inside(panels[0], [shade_entry("a branch begins or ends")])
+    legend_below(figure, branch_handles(colors, branch_names(attractors)))
     at = "".join(f", {words}" for words in fixed_numbers(attractors, [parameter]))
     label_panels(panels, [f"{law} law{at}{end}" for end in ("", ": basin fractions") for law in laws])
     return figure

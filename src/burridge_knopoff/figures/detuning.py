@@ -14,8 +14,7 @@ from burridge_knopoff.figures.style import (
     label_panels,
     legend_below,
     legend_entries,
-    new_figure,
-    page_width,
+    panel_table,
     say,
     show_all,
     styled,
@@ -37,15 +36,13 @@ the ratio follows the masses; for oscillators of equal amplitude that are locked
 def draw(rotation: xarray.Dataset) -> Figure:
     """Draw the amplitude ratio after detuning versus a for each law, in the colours of the branches."""
     laws = [str(law) for law in rotation["law"].values]
-    figure, panels = new_figure(page_width(len(laws)), 3.4, columns=len(laws))
+    figure, (panels,) = panel_table(2.4, len(laws), "$a$", ["amplitude of block 3 over that of block 1"])
     grid = np.unique(rotation["a"].values[rotation["in_grid"].values == 1])
     for panel, law in zip(panels, laws, strict=True):
         _ratios(panel, rotation.sel(law=law))
         show_all(panel, grid)
         # Room for the label of the lowest line.
         panel.margins(y=0.1)
-        panel.set_xlabel("$a$")
-    panels[0].set_ylabel("amplitude of block 3 over that of block 1")
     label_panels(panels, [f"{law} law" for law in laws])
     handles, _ = legend_entries(panels)
     if handles:
@@ -62,7 +59,7 @@ def _ratios(panel: Axes, rotation: xarray.Dataset) -> None:
             continue
         leading_mode = detuned["detuned_mode_share"].values[together].mean(axis=0).argmax()
         of_mode = abs(detuned["mode_end_ratio"].values[leading_mode])
-        panel.axhline(of_mode, color="0.4", linewidth=0.6, zorder=0)
+        panel.axhline(of_mode, color="0.4", linewidth=0.6, zorder=0, label="normal mode")
         panel.annotate(
             f"$d$ = {detuning:g}", (1.0, of_mode), xycoords=("axes fraction", "data"), xytext=(-3, -2), ha="right",
             va="top", textcoords="offset points", fontsize=8.0,

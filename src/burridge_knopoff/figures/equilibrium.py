@@ -31,12 +31,11 @@ def draw(equilibrium: xarray.Dataset) -> Figure:
         look = {"color": law_color(n), "linestyle": dashes(n), "marker": lone_marker(a)}
         panel.plot(a, part["eigenvalue"].sel(part="real").max("mode").values, **look, linewidth=0.8, markersize=6.0)
         some = slice(None, None, max(1, len(a) // 12))
-        panel.plot(a[some], part["growth_rate"].values[some], **law_symbol(n), linestyle="", label=f"{law}, simulated")
+        panel.plot(a[some], part["growth_rate"].values[some], **law_symbol(n), linestyle="")
     panel.set(xlabel="$a$", ylabel=r"largest $\mathrm{Re}\,\lambda$")
-    handles, _ = panel.get_legend_handles_labels()
-    eigenvalues = [
-        Line2D([], [], color=law_color(n), linestyle=dashes(n), label=f"{law}, eigenvalues")
+    laws = [
+        Line2D([], [], **law_symbol(n), linestyle=dashes(n), linewidth=0.8, label=f"{law} law")
         for n, law in enumerate(equilibrium["law"].values)
     ]
-    panel.legend(handles=[*eigenvalues, *handles[1:], handles[0]], loc="upper left")
+    panel.legend(handles=[*laws, *panel.get_legend_handles_labels()[0]], loc="upper left")
     return figure

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.palette import dashes, law_color, state_symbol
-from burridge_knopoff.figures.style import PAGE, label_panels, legend_below, new_figure, styled
+from burridge_knopoff.figures.style import COLUMN, label_panels, legend_below, new_figure, styled
 from burridge_knopoff.laws import Law, law_of
 from burridge_knopoff.running.status import Status
 
@@ -34,7 +34,7 @@ SPEEDS = np.concatenate([[0.0], np.geomspace(1e-3, 1e4, 4001)])
 
 # Lines of a law in the legend, and letters in a line.
 LINES = 3
-LETTERS = 100
+LETTERS = 50
 
 # Size of the symbol of the first initial state.
 SIZE = 3.2
@@ -49,7 +49,7 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
     """
     laws = [law_of(name, shown_a, description) for name, description in law_descriptions.items()]
     a_values = sorted({shown_a, float(mean_distance["a"].max())})
-    figure, (left, right) = new_figure(PAGE, 2.9 + 0.17 * len(laws), columns=2)
+    figure, (upper, lower) = new_figure(COLUMN, 4.4 + 0.3 * len(laws), rows=2, share_columns=False)
     # A run that did not complete may have diverged.
     least_friction = mean_distance["least_friction"].where(mean_distance["status"] == Status.COMPLETED)
     last = least_friction.sel(a=a_values[-1]).min("initial")
@@ -60,33 +60,33 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
     for n, law in enumerate(laws):
         look: Any = {"color": law_color(n), "linestyle": dashes(n)}
         for a in a_values:
-            left.plot(speed, law.at(a)(speed), **look)
+            upper.plot(speed, law.at(a)(speed), **look)
         for k, initial in enumerate(mean_distance["initial"].values):
             least = least_friction.sel(initial=initial, law=law.name)
-            right.plot(
+            lower.plot(
                 mean_distance["a"], least, **{**state_symbol(k, SIZE), **look}, markevery=max(1, least.size // 8)
             )
-    left.set(xlabel="velocity $U$′", ylabel=r"friction $\Phi$", xlim=(-0.05 * fastest, 1.25 * fastest))
+    upper.set(xlabel="velocity $U$′", ylabel=r"friction $\Phi$", xlim=(-0.05 * fastest, 1.25 * fastest))
     for a in a_values:
         # A bracket joins the ends of the curves of one a.
         ends = [law.at(a)(speed[-1:])[0] for law in laws]
-        left.plot(2 * [1.03 * fastest], [min(ends), max(ends)], color="0.5", linewidth=0.7)
+        upper.plot(2 * [1.03 * fastest], [min(ends), max(ends)], color="0.5", linewidth=0.7)
         at = (1.03 * fastest, np.mean([min(ends), max(ends)]))
-        left.annotate(f"$a={a:g}$", at, (3, 0), textcoords="offset points", va="center", fontsize=8.0)
-    right.set(xlabel="$a$", ylabel=r"least $\Phi$")
-    left.set_ylim(*left.get_ylim())
-    left.plot([0.0, 0.0], [-1.0, 1.0], color="0.4", linewidth=2.0, solid_capstyle="butt", label="stuck block")
-    left.legend(loc="lower left", bbox_to_anchor=(0.06, 0.0))
+        upper.annotate(f"$a={a:g}$", at, (3, 0), textcoords="offset points", va="center", fontsize=8.0)
+    lower.set(xlabel="$a$", ylabel=r"least $\Phi$")
+    upper.set_ylim(*upper.get_ylim())
+    upper.plot([0.0, 0.0], [-1.0, 1.0], color="0.4", linewidth=2.0, solid_capstyle="butt", label="stuck block")
+    upper.legend(loc="lower left", bbox_to_anchor=(0.06, 0.0))
     states = [
         Line2D([], [], **state_symbol(k, SIZE), label=f"run from {initial}")
         for k, initial in enumerate(mean_distance["initial"].values)
     ]
-    right.legend(handles=states, loc="lower left")
+    lower.legend(handles=states, loc="lower left")
     legend_below(
         figure,
         [Line2D([], [], color=law_color(n), linestyle=dashes(n), label=_entry(law)) for n, law in enumerate(laws)],
     )
-    label_panels((left, right), ["friction versus velocity", "least friction in each run"])
+    label_panels((upper, lower), ["friction versus velocity", "least friction in each run"])
     return figure
 
 

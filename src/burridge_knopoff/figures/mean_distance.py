@@ -12,16 +12,19 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.figures.branches import branch_colors, named_colors
-from burridge_knopoff.figures.palette import state_symbol
+from burridge_knopoff.figures.palette import UNDETERMINED, state_symbol
 from burridge_knopoff.figures.style import (
     begin_at_zero,
     draw_strips,
     label_panels,
     legend_below,
+    legend_inside,
     page_width,
+    panel_table,
     say,
     show_all,
     styled,
@@ -45,21 +48,19 @@ def draw(
 ) -> Figure:
     """Draw ⟨J⟩(a) of the runs over the branches of attractors, and the branch that each initial state reaches.
 
-    A column for each law. Above: coloured points are attractors, black symbols are runs with three standard errors;
-    runs that did not complete are left out. Below: a row for each initial state and convention of contact and start, in
-    the colour of the branch that it reaches; white is undetermined.
+    A panel for each law, with a second one if there are attractors. Above: coloured points are attractors, black
+    symbols are runs with three standard errors; runs that did not complete are left out. Below: a row for each initial
+    state and convention of contact and start, in the colour of the branch that it reaches; black is undetermined.
 
     orbits : the summary of the synchronized orbit; without it, a_c is not marked
     attractors : without them, only the runs are drawn
     """
     laws = mean_distance["law"].values
-    strips = [] if attractors is None else [0.13 * attractors["initial_branch"].isel(law=0, a=0).size + 0.2]
-    figure = Figure(figsize=(page_width(len(laws)), 3.4 + sum(strips)), layout="constrained")
-    panels = figure.subplots(
-        1 + len(strips), len(laws), sharex=True, sharey="row", squeeze=False, height_ratios=[2.6, *strips]
-    )
+    if attractors is None:
+        figure, panels = panel_table(2.1, len(laws), "$a$", [r"$\langle J\rangle$"])
+    else:
+        figure, panels = _with_strips(len(laws), attractors["initial_branch"].isel(law=0, a=0).size)
     colors = {} if attractors is None else branch_colors(attractors)
-    marked: dict[str, Artist] = {}
     for column, law in enumerate(laws):
         if attractors is not None:
             draw_attractors(panels[0, column], attractors.sel(law=law), "a", colors, 6.0)
@@ -76,29 +77,38 @@ def draw(
         for index, initial in enumerate(runs["initial"].values):
             draw_runs(panels[0, column], runs.sel(initial=initial), "a", **state_symbol(index, size))
         if orbits is not None and np.isfinite(critical := orbits["critical_a"].sel(law=law).item()):
-            look = {"color": "0.4", "linestyle": ":", "linewidth": 0.9}
-            marked["a_c"] = panels[0, column].axvline(critical, zorder=0, label="$a_c$", **look)
-        panels[-1, column].set_xlabel("$a$")
-    panels[0, 0].set_ylabel(r"$\langle J\rangle$")
-    if strips:
-        panels[1, 0].set_ylabel("initial state,\ncontact, start", fontsize=7.0)
+            panels[0, column].axvline(critical, zorder=0, color="0.4", linestyle=":", linewidth=0.9)
+            top, look = ("data", "axes fraction"), {"textcoords": "offset points", "va": "top", "fontsize": 8.0}
+            panels[0, column].annotate("$a_c$", (critical, 1.0), (3, -3), xycoords=top, **look)
     begin_at_zero(panels[0, 0])
     show_all(panels[0, 0], mean_distance["a"].values)
-    legend_below(
-        figure,
-        [
-            *(
-                Line2D([], [], label=f"run from {name}", **state_symbol(n))
-                for n, name in enumerate(mean_distance["initial"].values)
-            ),
-            *marked.values(),
-        ],
-        branch_handles(colors, {} if attractors is None else branch_names(attractors)),
-    )
+    states = mean_distance["initial"].values
+    symbols: list[Artist] = [
+        Line2D([], [], label=f"run from {name}", **state_symbol(n)) for n, name in enumerate(states)
+    ]
+    if attractors is None:
+        legend_below(figure, symbols)
+    else:
+        if (attractors["initial_branch"] < 0).any():
+            symbols.append(Patch(facecolor=UNDETERMINED, label="undetermined"))
+        legend_inside(panels[0, 0], symbols)
+        legend_below(figure, branch_handles(colors, branch_names(attractors)))
     label_panels(
         panels.flat, [*(f"{law} law" for law in laws), *(f"{law} law: branch reached" for law in laws)][: panels.size]
     )
     return figure
+
+
+def _with_strips(laws: int, rows: int) -> tuple[Figure, np.ndarray]:
+    """Return a figure with a column for each law, and its panels, of which the lower have a number of rows."""
+    height = 0.13 * rows + 0.2
+    figure = Figure(figsize=(page_width(laws), 3.2 + height), layout="constrained")
+    panels = figure.subplots(2, laws, sharex=True, sharey="row", squeeze=False, height_ratios=[2.6, height])
+    for panel in panels[1]:
+        panel.set_xlabel("$a$")
+    panels[0, 0].set_ylabel(r"$\langle J\rangle$")
+    panels[1, 0].set_ylabel("initial state,\ncontact, start", fontsize=7.0)
+    return figure, panels
 
 
 def draw_attractors(
@@ -137,8 +147,8 @@ def _label_constant_friction(panel: Axes, runs: xarray.Dataset) -> None:
 
 def _conventions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -> None:
     names, reached = branches_reached(attractors)
-    picture = np.ones((*reached.shape, 3))
-    for branch, color in colors.items():
+    picture = np.zeros((*reached.shape, 3))
+    for branch, color in {**colors, -1: UNDETERMINED}.items():
         picture[reached == branch] = to_rgb(color)
     draw_strips(panel, attractors["a"].values, picture)
     panel.set_yticks(np.arange(len(names)) + 0.5, names, fontsize=6.5)

@@ -8,11 +8,12 @@ readers too, which `tests/figures/test_palette.py` computes.
 
 from __future__ import annotations
 
+from colorsys import hls_to_rgb, rgb_to_hls
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
-from matplotlib.colors import ListedColormap, to_hex
+from matplotlib.colors import ListedColormap, to_hex, to_rgb
 
 SYNCHRONIZED = "#0A5AB6"
 
@@ -20,14 +21,12 @@ SYNCHRONIZED = "#0A5AB6"
 #: search: any two of them, and grey, differ by 20 in CIELAB for every kind of colour vision, the first four in print
 #: without colour too, by their lightness.
 BRANCHES = (
-    *(SYNCHRONIZED, "#E86E00", "#FCC000", "#0C3000", "#7800FF", "#E430FF", "#3C9C60", "#E4183C", "#D89CF0", "#54540C"),
-    *("#30E478", "#6C003C", "#906090", "#6C0078", "#3C009C"),
+    *(SYNCHRONIZED, "#E86E00", "#FCC000", "#0C3000", "#E430FF", "#7800FF", "#3C9C60", "#E4183C", "#6C0078", "#54540C"),
+    *("#30E478", "#6C003C", "#906090", "#D89CF0", "#3C009C"),
 )
-#: Branches beyond those, and states whose branch is undetermined.
+#: Branches that fill little of a picture, and states whose branch is undetermined.
 OTHER_BRANCHES = "#999999"
 UNDETERMINED = "#000000"
-#: Branches beyond those in a map, where each needs a shade.
-OTHER_SHADES = (OTHER_BRANCHES, "#666666", "#CCCCCC", "#444444")
 
 #: {number of a kind of motion: colour}. Undetermined motion is white; from periodic to chaotic motion colours darken.
 KINDS = {
@@ -48,6 +47,9 @@ DASHES: tuple[Any, ...] = (
 )  # fmt: skip
 MARKERS = ("o", "s", "^", "D", "v", "p", "h", "x")
 
+
+# Lightness of light colours: a mirror pair that fills a map differs as much from its own image as from other branches.
+LIGHT = 0.85
 
 #: Initial states: a filled symbol, then open symbols that grow, so that one is seen around another.
 STATE_MARKERS = "ovs^Dph*"
@@ -93,7 +95,13 @@ def ramp(count: int) -> list[str]:
     return [to_hex(RAMP(k / max(1, count - 1))) for k in range(count)]
 
 
+def light(color: str) -> str:
+    """Return a light colour of the same hue, both #rrggbb, for the mirror image of a part of a map."""
+    hue, _, saturation = rgb_to_hls(*to_rgb(color))
+    return to_hex(hls_to_rgb(hue, LIGHT, saturation))
+
+
 def pale(color: str) -> str:
-    """Return a lighter shade of a colour, both #rrggbb."""
+    """Return a lighter shade of a colour, both #rrggbb, for points on white."""
     parts = (int(color[k : k + 2], 16) for k in (1, 3, 5))
     return "#" + "".join(f"{round(0.45 * part + 0.55 * 255):02x}" for part in parts)

@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 import xarray
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
 
 from burridge_knopoff.figures.model_words import fixed_numbers, parameter_words, symbol
 from burridge_knopoff.figures.style import (
@@ -27,6 +29,9 @@ from burridge_knopoff.figures.style import (
 #: Most values of each further parameter that have panels.
 MOST = 6
 
+# Most ticks of a logarithmic axis.
+TICKS = 6
+
 #: Number of letters of a title for each inch of a panel with its share of the numbers and colours beside it.
 LETTERS = 14
 
@@ -40,9 +45,9 @@ def draw_panels(
 ) -> tuple[Figure, list[Axes], QuadMesh | None]:
     """Draw a panel for each law, initial state and value of further parameters; return figure, panels and the last map.
 
-    The first two parameters with several values are the axes of a map, with each value at its place; a single one is
-    the axis of a curve. Of further parameters at most MOST values are shown, which are evenly spaced in the list of
-    all.
+    The first two parameters with several values are the axes of a map, which is logarithmic along a parameter whose
+    values are about in geometric progression; a single one is the axis of a curve. Of further parameters at most MOST
+    values are shown, which are evenly spaced in the list of all.
 
     label : of the vertical axis of a curve
     curve : draws one panel, from the values of the parameter and the Dataset over it
@@ -78,16 +83,45 @@ def draw_map(
 ) -> QuadMesh:
     """Draw a map over the first two of the parameters; other arguments are those of `draw_panels`."""
     first, second = varied[:2]
-    edges = [map_cells(part[name].values) for name in (first, second)]
-    panel.set_xlim(edges[0][0], edges[0][-1])
-    return panel.pcolormesh(*edges, colors(part.transpose(second, first, ...)), rasterized=True, **look)
+    edges = [_edges(part[name].values) for name in (first, second)]
+    drawn = panel.pcolormesh(*edges, colors(part.transpose(second, first, ...)), rasterized=True, **look)
+    if is_geometric(part[first].values):
+        panel.set_xscale("log")
+        _set_ticks(panel.xaxis, part[first].values)
+    if is_geometric(part[second].values):
+        panel.set_yscale("log")
+        _set_ticks(panel.yaxis, part[second].values)
+    panel.set(xlim=edges[0][[0, -1]], ylim=edges[1][[0, -1]])
+    return drawn
+
+
+def is_geometric(values: np.ndarray) -> bool:
+    """Return whether the ratios of ascending values vary less than their differences."""
+    if len(values) < 3 or values[0] <= 0.0:
+        return False
+    steps, ratios = np.diff(values), np.diff(np.log(values))
+    return bool(np.ptp(ratios) / ratios.mean() < np.ptp(steps) / steps.mean() - 1e-9)
+
+
+def _edges(values: np.ndarray) -> np.ndarray:
+    return np.exp(map_cells(np.log(values))) if is_geometric(values) else map_cells(values)
+
+
+def _set_ticks(axis: Axis, values: np.ndarray) -> None:
+    shown = values[even_indices(len(values), TICKS)]
+    axis.set_minor_locator(NullLocator())
+    axis.set_ticks(shown, [f"{value:g}" for value in shown])
 
 
 def panels_across(count: int, of_law: int) -> int:
     """Return how many panels are side by side: those of a law if they fit, else as many as leave no panel alone.
 
+    Two panels stand one above the other, in the width of a journal column.
+
     count, of_law : numbers of all panels and of those of one law
     """
+    if count <= 2:
+        return 1
     if 1 < of_law <= ACROSS or count <= ACROSS:
         return min(of_law if of_law > 1 else count, ACROSS)
     return 2 if count % ACROSS and not count % 2 else ACROSS

@@ -11,7 +11,7 @@ from burridge_knopoff.figures.model_words import model_title
 from burridge_knopoff.figures.motion import draw_blocks
 from burridge_knopoff.figures.palette import block_color
 from burridge_knopoff.figures.single_panel import legend_entries
-from burridge_knopoff.figures.style import PAGE, label_panels, legend_below, new_figure, styled
+from burridge_knopoff.figures.style import COLUMN, label_panels, legend_below, new_figure, styled
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
@@ -31,7 +31,7 @@ FEW, THIN = 3, 0.4
 def draw(orbit: PeriodicOrbit) -> Figure:
     """Draw U_i'(τ) in a period that begins at the reference state, and U_i' versus U_i − vτ."""
     point, time = _point(orbit), orbit.model.chain.own_units.time
-    figure, (velocities, planes) = new_figure(PAGE, 3.1, columns=2, share_columns=False)
+    figure, (velocities, planes) = new_figure(COLUMN, 5.2, rows=2, share_columns=False)
     draw_blocks(velocities, point, "velocity")
     shown = min(orbit.period, LONGEST * time)
     velocities.set(xlabel=r"$\tau$", ylabel="$U_i$′", xlim=(0.0, shown))
@@ -65,5 +65,5 @@ def _phase_planes(panel: Axes, point: xarray.Dataset, factor: float) -> None:
     """Draw U_i' versus U_i − vτ of every block; factor : of the widths of all lines."""
     for index, (x, y) in enumerate(zip(point["position"].values.T, point["velocity"].values.T, strict=True)):
         panel.plot(x, y, color=block_color(index), linewidth=factor * WIDTHS[index % len(WIDTHS)])
-    panel.set_xlabel(r"$U_i-v\tau$")
+    panel.set(xlabel=r"$U_i-v\tau$", ylabel="$U_i$′")
     panel.locator_params(axis="x", nbins=6)

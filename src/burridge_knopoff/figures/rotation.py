@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.palette import KINDS
-from burridge_knopoff.figures.style import label_panels, legend_below, new_figure, page_width, say, show_all, styled
+from burridge_knopoff.figures.style import label_panels, legend_below, panel_table, say, show_all, styled
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.summaries.plateaux import locked_share, plateaux
 
@@ -39,7 +39,7 @@ LOOKS = (
 def draw(rotation: xarray.Dataset) -> Figure:
     """Draw the rotation number versus a for each law; periodic orbits and tori in the colours of their kinds."""
     laws = [str(law) for law in rotation["law"].values]
-    figure, panels = new_figure(page_width(len(laws)), 3.2, columns=len(laws))
+    figure, (panels,) = panel_table(2.1, len(laws), "$a$", [r"rotation number $\rho$"])
     titles = []
     for panel, law in zip(panels, laws, strict=True):
         part = rotation.sel(law=law)
@@ -49,8 +49,6 @@ def draw(rotation: xarray.Dataset) -> Figure:
         _curve(panel, part)
         a = rotation["a"].values[rotation["in_grid"].values == 1]
         show_all(panel, np.unique(a))
-        panel.set_xlabel("$a$")
-    panels[0].set_ylabel(r"rotation number $\rho$")
     label_panels(panels, titles)
     handles = {
         label: handle for panel in panels for handle, label in zip(*panel.get_legend_handles_labels(), strict=True)

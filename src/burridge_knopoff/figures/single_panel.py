@@ -10,16 +10,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.style import STYLE, StyledFigure, legend_below, new_figure
+from burridge_knopoff.figures.style import MOST_ENTRIES, STYLE, StyledFigure, legend_below, new_figure
 
 #: Size in inches of a figure with one panel.
 SIZE = (4.6, 3.3)
 
 # Differences of values that are rounding, as a fraction of the values, and of values near 0.
 ROUNDING, TINY = 1e-6, 1e-9
-
-#: Most entries of a legend.
-MOST_ENTRIES = 8
 
 
 def draw_panel(draw: Callable[[Axes], str], axes: Axes | None, size: tuple[float, float] = SIZE) -> Figure:

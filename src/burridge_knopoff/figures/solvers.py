@@ -1,83 +1,97 @@
-"""The results of independent solvers: ⟨J⟩, its difference from that of the study's solver, and the steps of each."""
+"""A table of the results of independent solvers: ⟨J⟩, its difference from the solver of the study, and the steps."""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 import xarray
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.palette import LAWS, MARKERS
-from burridge_knopoff.figures.style import PAGE, label_panels, legend_below, new_figure, styled
+from burridge_knopoff.figures.style import PAGE, label_panels, new_figure, styled
 
 TITLE = "Independent solvers"
 CATEGORY = "Friction laws"
 INPUTS = ("solvers",)
 CAPTION = """\
-Every solver for each law at a few values of a, with a row for each initial state and a. Left: ⟨J⟩ with its standard
-error. Middle: the difference from ⟨J⟩ of the solver that the study uses; short lines are standard errors of this
-difference. Differences below 10⁻¹⁵, including 0, are drawn at the left edge. Right: the number of steps per unit time;
-dotted: that of the paper's runs.
+Every solver for each law at a few values of a, with a row for each initial state and a: ⟨J⟩ of the solver that the
+study uses, with its standard error; the difference of ⟨J⟩ of each other solver, with the standard error of this
+difference; and the number of steps per unit time of each solver (10⁶ in the paper's runs). Differences and errors below
+10⁻¹² are rounding, and are written as 0. A dash: the solver does not apply, or the run did not complete.
 """
 
-#: Steps per unit time in the paper's own numerical solution.
-PAPER_STEPS = 1e6
+# Smaller differences are rounding.
+FLOOR = 1e-12
 
-# Smaller differences are rounding; they, and 0, are drawn here.
-FLOOR = 1e-15
+# Height of a row of a table in inches, and width of the columns of initial state and a, as shares of all.
+ROW = 0.165
+STATE, A = 0.11, 0.07
 
 
 @styled
 def draw(solvers: xarray.Dataset) -> Figure:
-    """Draw ⟨J⟩, its difference from that of the study's solver, and steps per unit time, for every solver.
-
-    A row of panels for each law, with a line for each initial state and a.
-    """
-    laws, states, a = (solvers[name].values for name in ("law", "initial", "a"))
-    lines = [(initial, value) for initial in states for value in a]
-    height = 0.5 + 0.17 * len(lines)
-    figure, panels = new_figure(PAGE, 0.9 + height * len(laws), rows=len(laws), columns=3)
-    names = [name for name in solvers["solver"].values.tolist() if (solvers["status"].sel(solver=name) >= 0).any()]
-    place = np.arange(len(lines))
-    titles = []
-    for row, law in enumerate(laws):
-        means, differences, steps = panels[3 * row : 3 * row + 3]
-        reference = solvers.attrs[f"solver_{law}"]
-        for n, name in enumerate(names):
-            run = solvers.sel(law=law, solver=name).stack(line=("initial", "a"))
-            look = _look(n)
-            means.errorbar(run["mean_distance"], place, xerr=run["mean_distance_error"], **look)
-            steps.plot(run["step_count"].where(run["step_count"] > 0) / run["end_time"], place, **look)
-            if name != reference:
-                differences.plot(np.maximum(abs(run["difference"]), FLOOR), place, **look)
-                error = np.maximum(run["difference_error"], FLOOR)
-                differences.plot(error, place, "|", color=look["color"], markersize=6, markeredgewidth=0.8)
-        steps.axvline(PAPER_STEPS, color="0.4", linestyle=":", linewidth=0.9)
-        means.set_yticks(place, [f"{initial}, $a={value:g}$" for initial, value in lines], fontsize=7.5)
-        means.tick_params(axis="y", length=0)
-        means.set_ylim(len(lines) - 0.4, -0.6)
-        titles += [rf"{law} law: $\langle J\rangle$", f"{law} law: difference", f"{law} law: steps"]
-    means, differences, steps = panels[-3:]
-    means.set_xlabel(r"$\langle J\rangle$")
-    differences.set(xlabel=r"$|\Delta\langle J\rangle|$", xscale="log", xlim=(0.2 * FLOOR, 1.0))
-    steps.set(xlabel="steps per unit time", xscale="log", xlim=(0.3, 10.0 * PAPER_STEPS))
-    handles = [Line2D([], [], **_look(n), label=name) for n, name in enumerate(names)]
-    handles.append(Line2D([], [], color="0.3", marker="|", linestyle="", markersize=6, label="standard error"))
-    handles.append(Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="steps of the paper's runs"))
-    legend_below(figure, handles)
-    label_panels(panels, titles)
+    """Draw a table for each law, with a row for each initial state and a."""
+    laws = solvers["law"].values
+    height = ROW * (solvers.sizes["initial"] * solvers.sizes["a"] + 2)
+    figure, panels = new_figure(PAGE, 0.1 + (height + 0.3) * len(laws), rows=len(laws))
+    for panel, law in zip(panels, laws, strict=True):
+        _table(panel, *_cells(solvers.sel(law=law), solvers.attrs[f"solver_{law}"]))
+    label_panels(panels, [f"{law} law" for law in laws])
     return figure
 
 
-def _look(solver: int) -> dict[str, Any]:
-    """Return the symbol of a solver: open and of growing size, so that all are seen where they coincide."""
-    return {
-        "color": LAWS[solver % 2],
-        "marker": MARKERS[solver],
-        "markerfacecolor": "none",
-        "markersize": 3.0 + 1.7 * solver,
-        "markeredgewidth": 0.8,
-        "linestyle": "",
-    }
+def _cells(solvers: xarray.Dataset, reference: str) -> tuple[list[str], list[list[str]]]:
+    """Return the head of the table of one law, and its rows; reference : the solver that the study uses."""
+    names = [name for name in solvers["solver"].values.tolist() if (solvers["status"].sel(solver=name) >= 0).any()]
+    others = [name for name in names if name != reference]
+    head = [
+        *("initial state", "$a$", rf"$\langle J\rangle$, {reference}"),
+        *(rf"$|\Delta\langle J\rangle|$, {name}" for name in others),
+        *(f"steps, {name}" for name in names),
+    ]
+    rows = []
+    for initial in solvers["initial"].values:
+        for a in solvers["a"].values:
+            runs = solvers.sel(initial=initial, a=a)
+            study, steps = runs.sel(solver=reference), runs["step_count"] / runs["end_time"]
+            differences = [runs.sel(solver=name) for name in others]
+            rows.append(
+                [
+                    *(f"{initial}", f"{a:g}"),
+                    _measured(study["mean_distance"].item(), study["mean_distance_error"].item(), "{:.4f}"),
+                    *(_measured(abs(run["difference"].item()), run["difference_error"].item()) for run in differences),
+                    *(_number(steps.sel(solver=name).item(), "{:#.3g}") for name in names),
+                ]
+            )
+    return head, rows
+
+
+def _measured(value: float, error: float, form: str = "") -> str:
+    return _number(value, form) if value < FLOOR > error else f"{_number(value, form)} ± {_number(error)}"
+
+
+def _number(value: float, form: str = "") -> str:
+    """Return a number in a format of its own, or as one digit times a power of ten; 0 for rounding."""
+    if not np.isfinite(value):
+        return "–"
+    if abs(value) < FLOOR:
+        return "0"
+    if form:
+        return form.format(value).rstrip(".")
+    digit, _, power = f"{value:.0e}".partition("e")
+    return rf"${digit}\times10^{{{int(power)}}}$"
+
+
+def _table(panel: Axes, head: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """Write a table into a panel: columns of words and a to the left, the others aligned at their middles."""
+    panel.set_axis_off()
+    panel.set(xlim=(0.0, 1.0), ylim=(len(rows) + 0.7, -0.8))
+    width = (1.0 - STATE - A) / (len(head) - 2)
+    places = [0.0, STATE, *(STATE + A + width * (k + 0.5) for k in range(len(head) - 2))]
+    for line, row in enumerate([head, *rows]):
+        for column, (x, words) in enumerate(zip(places, row, strict=True)):
+            align = "left" if column < 2 else "center"
+            panel.text(x, line, words, ha=align, va="center_baseline", fontsize=7.5)
+    for y, thickness in ((-0.7, 0.8), (0.5, 0.5), (len(rows) + 0.6, 0.8)):
+        panel.axhline(y, color="black", linewidth=thickness, clip_on=False)

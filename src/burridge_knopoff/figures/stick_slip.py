@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from burridge_knopoff.figures.palette import block_color
-from burridge_knopoff.figures.style import PAGE, begin_at_zero, label_panels, legend_below, new_figure, say, styled
+from burridge_knopoff.figures.style import begin_at_zero, label_panels, legend_below, panel_table, say, styled
 
 TITLE = "Stick-slip cycles"
 CATEGORY = "Runs"
@@ -21,11 +20,11 @@ INPUTS = ("stick_slip",)
 FROM_STUDY = ("shown_law",)
 CAPTION = """\
 Stick-slip cycles of the first, middle and last block versus a, for each initial state, under one law of the study (the
-config's `figures.law`). From top to bottom: the time between two stops, with its standard error; in chains of more than
-two blocks, the frequency of the end blocks divided by that of the middle block, from the peaks of the velocity spectra
-(bars: resolution of the spectra) and from the stops; the correlation of the velocities of the end blocks; and the
-fraction of time for which each block sticks. Band and dotted lines: the paper's statements for its three blocks, a
-cycle of two to three units of time and half the frequency of the middle block.
+config's `figures.law`). Top: the time between two stops, with its standard error. Bottom: in chains of more than two
+blocks, the frequency of the end blocks divided by that of the middle block, from the peaks of the velocity spectra
+(bars: resolution of the spectra); and the correlation of the velocities of the end blocks. Band and dotted
+line: the paper's statements for its three blocks, a cycle of two to three units of time and half the frequency of the
+middle block.
 """
 
 #: The paper's statements: a stick-slip cycle lasts about two or three time units; the end blocks oscillate at about
@@ -36,11 +35,14 @@ PAPER_RATIO = 0.5
 # The end blocks often coincide: the later one is drawn smaller, inside the marker of the first.
 SIZES = (4.4, 2.8, 2.0)
 MARKERS = ("o", "s", "o")
+# Seen on the other symbols where all are 1.
+CORRELATION: Any = {"color": "black", "marker": "D", "markersize": 2.6, "markerfacecolor": "white", "linestyle": ""}
+CORRELATION |= {"markeredgewidth": 0.6, "zorder": 4}
 
 
 @styled
 def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
-    """Draw cycle times, frequency ratios, the correlation of the end blocks and stick fractions under one law.
+    """Draw cycle times, and the frequency ratios and the correlation of the end blocks, under one law.
 
     A column for each initial state, with the first, middle and last block. Frequency ratios are those of the end blocks
     to the middle block, which needs three blocks; the correlation needs two. Gaps are blocks that do not stop and runs
@@ -49,47 +51,28 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
     states, count = stick_slip["initial"].values, stick_slip.sizes["block"]
     middle = (count + 1) // 2
     numbers = sorted({1, middle, count})
-    # Two blocks have no middle block.
-    over_middle = [f"{quantity} frequency\nover that of block {middle}" for quantity in ("velocity", "stop")]
-    together_label = f"correlation of\n$U_1$′ with $U_{{{count}}}$′"
-    rows = {"cycle time": "time between stops"}
-    if count > 2:
-        rows |= dict(zip(("velocity frequencies", "stop frequencies"), over_middle, strict=True))
-    if count > 1:
-        rows["velocity correlation"] = together_label
-    rows["stick time"] = "fraction of time stuck"
-    labels = list(rows.values())
-    figure, panels = new_figure(PAGE, 0.6 + 1.45 * len(labels), rows=len(labels), columns=len(states))
+    of_ends = "frequency ratio,\ncorrelation" if count > 2 else "correlation"
+    rows = {"cycle time": "time between stops"} | ({"end blocks": of_ends} if count > 1 else {})
+    figure, table = panel_table(2.1, len(states), "$a$", list(rows.values()))
     for column, initial in enumerate(states):
         run = stick_slip.sel(law=shown_law, initial=initial)
-        cycles, *inner_panels, sticks = panels[column :: len(states)]
-        ratios, together = inner_panels[:-1], inner_panels[-1] if inner_panels else None
+        cycles, *ends = table[:, column]
         for n, block in enumerate(numbers):
-            series = run.sel(block=block)
-            _points(cycles, n, series["cycle_time"], series["cycle_time_error"])
-            _points(sticks, n, series["stick_fraction"])
-            if ratios and block != middle:
-                _ratios(ratios, n, series, run.sel(block=middle))
+            _points(cycles, n, run["cycle_time"].sel(block=block), run["cycle_time_error"].sel(block=block))
         _say_why(cycles, run, "cycle_time", "no stops")
-        _say_why(sticks, run, "stick_fraction", "")
         cycles.axhspan(*PAPER_CYCLE, color="0.88", linewidth=0, zorder=0)
-        if together is not None:
-            _say_why(together, run, "velocity_correlation", "the velocities do not change")
-            together.plot(run["a"], run["velocity_correlation"], "o", color="black", markersize=2.0)
-            together.axhline(0.0, color="0.7", linewidth=0.6, zorder=0)
-            together.set_ylim(-1.1, 1.1)
-        sticks.set_xlabel("$a$")
-        if ratios:
-            _say_why(ratios[0], run, "velocity_frequency", "the velocities do not change")
-            _say_why(ratios[1], run.sel(block=middle), "cycle_time", f"block {middle} does not stop")
-        for panel in ratios:
-            panel.axhline(PAPER_RATIO, color="0.4", linestyle=":", linewidth=0.9, zorder=0)
-    for panel, label in zip(panels[:: len(states)], labels, strict=True):
-        panel.set_ylabel(label)
-        if label != together_label:
-            begin_at_zero(panel)
+        for panel in ends:
+            for n, block in enumerate(numbers if count > 2 else ()):
+                if block != middle:
+                    _ratios(panel, n, run.sel(block=block), run.sel(block=middle))
+            panel.plot(run["a"], run["velocity_correlation"], **CORRELATION)
+            _say_why(panel, run, "velocity_correlation", "the velocities do not change")
+            panel.axhline(0.0, color="0.7", linewidth=0.6, zorder=0)
+            if count > 2:
+                panel.axhline(PAPER_RATIO, color="0.4", linestyle=":", linewidth=0.9, zorder=0)
+    begin_at_zero(table[0, 0])
     legend_below(figure, _legend(numbers))
-    label_panels(panels, [f"{initial}: {name}" for name in rows for initial in states])
+    label_panels(table.flat, [f"{initial}: {name}" for name in rows for initial in states])
     figure.suptitle(f"{shown_law} law", fontsize="medium")
     return figure
 
@@ -115,21 +98,17 @@ def _say_why(panel: Axes, run: xarray.Dataset, name: str, words: str) -> None:
         say(panel, "no run completed" if run["stick_fraction"].isnull().all() else words)
 
 
-def _ratios(panels: Sequence[Axes], n: int, end: xarray.Dataset, middle: xarray.Dataset) -> None:
-    """Draw the frequency ratio of an end block to the middle block, from velocities and from stops."""
-    velocities, stops = panels
-    # Both errors are resolutions of the spectrum.
+def _ratios(panel: Axes, n: int, end: xarray.Dataset, middle: xarray.Dataset) -> None:
+    """Draw the ratio of the velocity frequencies of an end block and the middle block."""
     ratio = end["velocity_frequency"] / middle["velocity_frequency"].drop_vars("block")
+    # Both errors are resolutions of the spectrum.
     shares = [(part["velocity_frequency_error"] / part["velocity_frequency"]).values for part in (end, middle)]
-    _points(velocities, n, ratio, ratio * np.hypot(shares[0], shares[1]))
-    rate = middle["stop_rate"].drop_vars("block")
-    _points(stops, n, end["stop_rate"] / rate.where(rate > 0.0))
+    _points(panel, n, ratio, ratio * np.hypot(shares[0], shares[1]))
 
 
 def _legend(numbers: list[int]) -> list[Line2D | Patch]:
-    band = Patch(facecolor="0.88", label="stated in the paper: 2 to 3")
     blocks = [Line2D([], [], **_look(n, block), label=f"block {block}") for n, block in enumerate(numbers)]
-    if len(numbers) < 3:
-        return [*blocks, band]
+    correlation = Line2D([], [], **CORRELATION, label=f"correlation of $U_1$′ with $U_{{{numbers[-1]}}}$′")
+    band = Patch(facecolor="0.88", label="stated in the paper: 2 to 3")
     half = Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="stated in the paper: 1/2")
-    return [*blocks, band, half]
+    return [*blocks, *([correlation] if len(numbers) > 1 else []), band, *([half] if len(numbers) > 2 else [])]

@@ -41,6 +41,9 @@ STRIP = 0.025
 # Largest number of panels side by side, where each initial state has a panel.
 ACROSS = 3
 
+#: Most entries of a legend.
+MOST_ENTRIES = 8
+
 # Typical number of letters of a title in an inch.
 LETTERS = 17
 
@@ -132,14 +135,18 @@ def panel_table(
 ) -> tuple[Figure, np.ndarray]:
     """Return a figure and its panels, shape (len(ys), columns); a row that does not fit continues in the next line.
 
+    One or two panels stand one above the other, in the width of a journal column.
+
     height : of a panel in inches, with its title
     x, ys : axis labels: one for all columns, and one for each row
     """
-    across = min(columns, ACROSS)
+    narrow = columns * len(ys) <= 2
+    across = 1 if narrow else min(columns, ACROSS)
     lines = -(-columns // across)
     count = len(ys) * lines
     empty = np.arange(count * across).reshape(len(ys), -1)[:, columns:].ravel().tolist()
-    figure, panels = new_figure(page_width(across), 0.6 + height * count, count, across, share_rows=False, empty=empty)
+    width = COLUMN if narrow else page_width(across)
+    figure, panels = new_figure(width, 0.6 + height * count, count, across, share_rows=False, empty=empty)
     table = np.reshape(np.array(panels, dtype=object), (len(ys), columns))
     for row, y in zip(table, ys, strict=True):
         for number, panel in enumerate(row):
@@ -216,6 +223,13 @@ def legend_below(figure: Figure | SubFigure, *groups: Sequence[Artist]) -> None:
         if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
             return
         legend.remove()
+
+
+def legend_inside(panel: Axes, handles: Sequence[Artist]) -> None:
+    """Put a small legend where it covers the least of a panel, in a frame that tells its symbols from points."""
+    if handles:
+        look: Any = {"frameon": True, "fancybox": False, "edgecolor": "0.7", "fontsize": 7.0, "handlelength": 1.5}
+        panel.legend(handles=handles, loc="best", **look).get_frame().set_linewidth(0.5)
 
 
 def _padded(handles: Sequence[Artist], columns: int) -> list[Artist]:

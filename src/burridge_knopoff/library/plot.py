@@ -110,8 +110,8 @@ def _dataset_drawing(data: xarray.Dataset, attractors: xarray.Dataset | None) ->
     if "first_position" in data.dims and "branch" in data:
         maps = data if "map" in data.dims else data.expand_dims("map")
         if maps.sizes["map"] > 1:
-            return _without_axes(partial(basins.draw, maps, attractors, {}))
-        return partial(basins.draw_single, maps, attractors, _paper_states(maps))
+            return _without_axes(partial(basins.draw, maps, {}))
+        return partial(basins.draw_single, maps, _paper_states(maps))
     if attractors is not None:
         return None
     if {"branch", "basin_count"} <= {*data}:

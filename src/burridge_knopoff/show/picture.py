@@ -27,9 +27,6 @@ CATALOGUE_FILE = "slip_events"
 
 FORMATS = (".png", ".pdf", ".svg")
 
-#: A figure and the file of another summary without which it can be drawn, if it belongs to no study.
-OPTIONAL = {("basins", "attractors")}
-
 #: Arguments that figures take from the study, for a file that belongs to none.
 WITHOUT_STUDY: dict[str, Any] = {"marked_states": {}}
 
@@ -62,17 +59,10 @@ def write_picture(result: Result, path: str | Path) -> str:
         whole = f": {result.study_path(summary)}" if summary in result.files else ""
         raise ValueError(f"{result.path}: no picture of a part of a summary; plot the whole summary{whole}")
     figure = _figure_of(result)
-    absent = [
-        name
-        for name in figure.inputs
-        if not result.study and (figure.name, name) in OPTIONAL and not result.path.with_name(f"{name}.nc").exists()
-    ]
-    names = [name for name in figure.inputs if name not in absent]
-    inputs = [result if name == result.name else _open_neighbour(result, name) for name in names]
+    inputs = [result if name == result.name else _open_neighbour(result, name) for name in figure.inputs]
     module = import_module(f"burridge_knopoff.figures.{figure.name}")
     try:
-        arguments = {**dict.fromkeys(absent), **_study_arguments(result, figure)}
-        drawn = module.draw(*(source.data for source in inputs), **arguments)
+        drawn = module.draw(*(source.data for source in inputs), **_study_arguments(result, figure))
     except (AttributeError, KeyError, IndexError, ValueError):
         paths = " with ".join(str(source.path) for source in inputs)
         old = any(not source.of_these_sources for source in inputs)
