@@ -47,7 +47,8 @@ def _model(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
     options = {
         key: attributes[name] for key in CHAIN_OPTIONS if key != "ends" and (name := f"chain_{key}") in attributes
     }
-    options = {key: value for key, value in options.items() if "damping" not in key or np.any(value)}
+    usual = {"damping": 0.0, "pulling_damping": 0.0, "weakening": 1.0}
+    options = {key: value for key, value in options.items() if key not in usual or np.any(value != usual[key])}
     chain = ", ".join(f"{key} {_text(value)}" for key, value in options.items())
     yield "chain", f"{point.sizes['block']} blocks, {attributes['chain_ends']}: {chain}"
     numbers = [
