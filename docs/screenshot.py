@@ -1,4 +1,4 @@
-"""Take the picture of the report in the README: `python docs/screenshot.py PROGRAM`, the path of a Chromium.
+"""Take the picture of the report in docs/results.md: `python docs/screenshot.py PROGRAM`, the path of a Chromium.
 
 It shows ⟨J⟩ and the run that is picked in results/paper/report.html, in a window 1440 pixels wide.
 """
