@@ -81,3 +81,16 @@ def test_the_figure_of_basin_fractions_shows_the_colours_of_the_branches() -> No
     picture = np.asarray(Image.open(ROOT / "docs/figures/basin_fractions.png").convert("RGB"), dtype=int).reshape(-1, 3)
     colors = [np.array([int(name[k : k + 2], 16) for k in (1, 3, 5)]) for name in (*BRANCHES[:4], OTHER_BRANCHES)]
     assert all((np.abs(picture - color).sum(axis=1) <= 24).sum() > 100 for color in colors)
+
+
+def test_the_page_on_claims_counts_where_the_laws_agree() -> None:
+    shares = re.search(
+        r"of the value at each a, at ([\d.]+) % \(minus\) and ([\d.]+) %", claim_sections(ROOT)["laws_agree"]
+    )
+    counts = re.search(
+        r"agree at (\d+) of the (\d+) values from `minus`.*? and at (\d+) from", words_of("docs/claims.md")
+    )
+    assert shares
+    assert counts
+    minus, values, plus = map(int, counts.groups())
+    assert (f"{100 * minus / values:.1f}", f"{100 * plus / values:.1f}") == shares.groups()

@@ -57,6 +57,7 @@ NUMBERS = {
     "Chain.pulling": ([1.0, 0.0, 2.0], lambda x: Chain(3, pulling=x).pulling),
     "Chain.threshold": ([1.0, 1.1, 1.2], lambda x: Chain(3, threshold=x).threshold),
     "Chain.mass": ([1.0, 1.1, 1.2], lambda x: Chain(3, mass=x).mass),
+    "Chain.weakening": ([1.0, -0.5, 0.0], lambda x: Chain(3, weakening=x).weakening),
     "Chain.grid": ([2, 3], lambda x: Chain(grid=x).grid),
     "Chain.damping": ([0.0, 0.5], lambda x: Chain(3, damping=x).damping),
     "Chain.pulling_damping": ([0.0, 0.5, 0.1], lambda x: Chain(3, pulling_damping=x).pulling_damping),
@@ -127,6 +128,7 @@ REFUSALS = {
 }
 #: Parameters of a model and masks are booleans or single numbers as well; these are formulas for arrays.
 FORMULAS = {"Model.stuck_blocks.position", "Model.stuck_blocks.velocity", "Model.check_directions.velocity"}
+FORMULAS |= {"Model.friction.speed", "Model.friction_slope.speed", "Chain.sliding_offset.friction"}
 FORMULAS |= {"SteadyMotion.replace_returns.returns", "SteadyMotion.replace_returns.mirror_returns"}
 
 

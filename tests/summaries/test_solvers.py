@@ -5,7 +5,6 @@ import pytest
 
 from burridge_knopoff import simulate
 from burridge_knopoff.dataset.point import write_point
-from burridge_knopoff.figures import solvers as figure
 from burridge_knopoff.provenance.bad_file import BadFile
 from burridge_knopoff.summaries.solvers import compare_solvers
 from tests.grids import grid_of
@@ -80,14 +79,3 @@ def test_a_file_of_another_solver_is_refused(study):
     series.write_bytes(rk4.read_bytes())
     with refused("series/linearized/plus/a0.0800.nc", "solver: rk4", error=BadFile):
         compare_solvers(*study)
-
-
-def test_the_figure_draws_every_solver(study):
-    dataset = compare_solvers(*study)
-    panels = figure.draw(dataset).axes
-    curves = [line.get_xdata().tolist() for line in panels[0].get_lines() if len(line.get_xdata()) == 2]
-    for solver in SOLVERS["linearized"]:
-        assert dataset["mean_distance"].sel(law="linearized", solver=solver, initial="plus").values.tolist() in curves
-    symbols = [line for line in panels[1].get_lines() if line.get_marker() not in ("|", "None")]
-    assert len(symbols) == len(SOLVERS["linearized"]) - 1
-    assert panels[4].get_title(loc="left") == "(e) nonlinear law: difference"

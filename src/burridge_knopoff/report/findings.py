@@ -141,7 +141,8 @@ FINDINGS = {
         "If the slope is reversed, the largest growth rate is {}.", "largest growth rate", max
     ),
     "laws_agree": Finding(
-        "Judged most strictly, ⟨J⟩ agrees at {} % or more of these values of a.", "share of a at which the laws agree"
+        "Compared with the largest value, ⟨J⟩ agrees at {} % or more of these values of a.",
+        "share of a at which the laws agree, of the largest value",
     ),
     "laws_agree_in_kind": Finding(
         "Judged most strictly, the kinds agree at {} % or more of these values of a.",
