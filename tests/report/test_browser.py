@@ -107,7 +107,7 @@ def test_the_report_of_a_study(browser, reported):
     # A figure at its full size, opened and closed with the keyboard.
     page.locator(".card .opens-picture").first.press("Enter")
     assert page.locator("#viewer").is_visible()
-    assert page.locator("#viewer img").evaluate("image => image.decode().then(() => image.naturalWidth)") == 2100
+    assert page.locator("#viewer img").evaluate("image => image.decode().then(() => image.naturalWidth)") == 1020
     page.keyboard.press("Escape")
     assert page.locator("#viewer").is_hidden()
 
