@@ -5,7 +5,8 @@ import pytest
 import xarray as xr
 
 from burridge_knopoff.figures.branches import OTHERS
-from burridge_knopoff.report.charts.branches import MOST, Branches
+from burridge_knopoff.figures.style import MOST_ENTRIES
+from burridge_knopoff.report.charts.branches import Branches
 
 
 def attractors(*counts):
@@ -32,7 +33,7 @@ def attractors(*counts):
 def test_a_chart_names_the_branches_with_the_most_marks(counts):
     branches = Branches(attractors(counts), "one")
     entries, marks = branches.legend(), branches.marks()
-    assert len(entries) == len(marks) <= MOST
+    assert len(entries) == len(marks) <= MOST_ENTRIES
     assert sum(len(trace.x) for trace in marks) == sum(counts)
     named = [entry.name for entry in entries if entry.name != OTHERS]
     assert (OTHERS in branches.groups) == (len(named) < len(counts))

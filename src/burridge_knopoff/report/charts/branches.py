@@ -21,14 +21,10 @@ _SHAPES = (
 )  # fmt: skip
 
 
-#: A chart shows at most so many branches by name, with all others as one of them.
-MOST = 8
-
-
 class Branches:
     """Names, colours and marks of the branches of attractors in the chart of one law.
 
-    Those with the most marks have a name, all others are one group.
+    Those with a colour of their own have a name, all others are one group.
     """
 
     def __init__(self, attractors: xarray.Dataset, law: str) -> None:
@@ -36,14 +32,10 @@ class Branches:
         self.names = branch_names(attractors)
         self.colors = branch_colors(attractors)
         self._hues = [number for number, color in sorted(self.colors.items()) if color != OTHER_BRANCHES]
-        numbers, counts = np.unique(self.attractors["branch"].values, return_counts=True)
-        marks = {number: count for number, count in zip(numbers.tolist(), counts.tolist(), strict=True) if number >= 0}
-        shown = sorted((number for number in marks if number in self._hues), key=lambda number: -marks[number])
-        if len(marks) > min(len(shown), MOST):
-            shown = shown[: MOST - 1]
+        numbers = [number for number in np.unique(self.attractors["branch"].values).tolist() if number >= 0]
         #: {name: numbers of the branches} of what is drawn.
-        self.groups = {self.names[number]: [number] for number in sorted(shown)}
-        if others := [number for number in marks if number not in shown]:
+        self.groups = {self.names[number]: [number] for number in numbers if number in self._hues}
+        if others := [number for number in numbers if number not in self._hues]:
             self.groups[OTHERS] = others
 
     def _look(self, group: str) -> tuple[str, str]:
