@@ -49,6 +49,7 @@ void read_model(Model &model) {
     springs.diagonal = next();
     springs.driving = next();
     springs.threshold = next();
+    springs.weakening = next();
     springs.sliding_force = next();
     springs.mass = next();
     springs.start = next<int64_t>();
