@@ -36,7 +36,8 @@ from burridge_knopoff import (
     synchronized_orbit,
 )
 from burridge_knopoff.figures.palette import KINDS, SYNCHRONIZED, ramp
-from burridge_knopoff.figures.style import PAGE, cells, label_panels, new_figure, styled, write_figure
+from burridge_knopoff.figures.strips import cells
+from burridge_knopoff.figures.style import PAGE, label_panels, new_figure, styled, write_figure
 from burridge_knopoff.motion.rotation import rotation_number
 
 PICTURE = Path(__file__).parent / "figures" / "tongues.png"

@@ -7,20 +7,16 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from burridge_knopoff.figures.strips import STRIP, cells, strip_columns, strips, strips_meet
 from burridge_knopoff.figures.style import (
     ACROSS,
     COLUMN,
-    STRIP,
     begin_at_zero,
-    cells,
     label_panels,
     legend_below,
     legend_entries,
     panel_table,
     scale_to_decades,
-    strip_columns,
-    strips,
-    strips_meet,
     styled,
 )
 

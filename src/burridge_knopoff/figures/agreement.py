@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from burridge_knopoff.dataset.variables import Answer
+from burridge_knopoff.figures.strips import shade, shade_entry
 from burridge_knopoff.figures.style import (
     label_panels,
     legend_below,
@@ -23,8 +24,6 @@ from burridge_knopoff.figures.style import (
     say,
     say_nothing,
     scale_to_decades,
-    shade,
-    shade_entry,
     styled,
 )
 

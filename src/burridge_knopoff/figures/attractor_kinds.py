@@ -12,7 +12,8 @@ from matplotlib.patches import Patch
 
 from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.figures.palette import KINDS
-from burridge_knopoff.figures.style import STRIP, cells, label_panels, legend_below, page_width, say, show_all, styled
+from burridge_knopoff.figures.strips import STRIP, cells, show_all
+from burridge_knopoff.figures.style import label_panels, legend_below, page_width, say, styled
 from burridge_knopoff.motion.kind import MotionKind
 
 TITLE = "Kinds of motion of the attractors"

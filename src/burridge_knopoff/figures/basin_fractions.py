@@ -13,6 +13,7 @@ from matplotlib.patches import Patch
 
 from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.figures.branches import OTHERS, branch_colors, fraction_curves, named_colors, undetermined_share
+from burridge_knopoff.figures.strips import strips_meet
 from burridge_knopoff.figures.style import (
     label_panels,
     legend_below,
@@ -22,7 +23,6 @@ from burridge_knopoff.figures.style import (
     page_width,
     say,
     say_nothing,
-    strips_meet,
     styled,
 )
 

@@ -10,7 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.attractors.lookup import CROSSINGS
-from burridge_knopoff.figures.style import label_panels, panel_table, say, show_all, styled
+from burridge_knopoff.figures.strips import show_all
+from burridge_knopoff.figures.style import label_panels, panel_table, say, styled
 from burridge_knopoff.summaries.bifurcation_diagram import (
     NEVER_UPWARD,
     NONE_COMPLETED,

@@ -16,15 +16,14 @@ from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.continuation.branch_changes import Change
 from burridge_knopoff.figures.branches import branch_colors, named_colors
 from burridge_knopoff.figures.palette import OTHER_BRANCHES, pale
+from burridge_knopoff.figures.strips import cells, show_all
 from burridge_knopoff.figures.style import (
     begin_at_zero,
-    cells,
     label_panels,
     legend_below,
     legend_inside,
     page_width,
     say_nothing,
-    show_all,
     styled,
 )
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind

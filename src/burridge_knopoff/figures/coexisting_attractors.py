@@ -13,8 +13,8 @@ from burridge_knopoff.figures.basin_fractions import draw_fractions, fraction_ha
 from burridge_knopoff.figures.branches import branch_colors
 from burridge_knopoff.figures.mean_distance import branch_handles, draw_attractors
 from burridge_knopoff.figures.model_words import constant, fixed_numbers, symbol
+from burridge_knopoff.figures.strips import SHADE, shade_entry, show_all
 from burridge_knopoff.figures.style import (
-    SHADE,
     begin_at_zero,
     label_panels,
     legend_below,
@@ -22,8 +22,6 @@ from burridge_knopoff.figures.style import (
     new_figure,
     page_width,
     say,
-    shade_entry,
-    show_all,
     styled,
 )
 

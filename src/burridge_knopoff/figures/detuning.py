@@ -10,15 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.palette import BRANCHES, MARKERS
-from burridge_knopoff.figures.style import (
-    label_panels,
-    legend_below,
-    legend_entries,
-    panel_table,
-    say,
-    show_all,
-    styled,
-)
+from burridge_knopoff.figures.strips import show_all
+from burridge_knopoff.figures.style import label_panels, legend_below, legend_entries, panel_table, say, styled
 from burridge_knopoff.summaries.one_frequency import has_one_frequency
 
 TITLE = "End blocks of unequal mass"

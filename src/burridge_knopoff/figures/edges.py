@@ -11,15 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.palette import KINDS
-from burridge_knopoff.figures.style import (
-    begin_at_zero,
-    label_panels,
-    legend_below,
-    page_width,
-    say,
-    show_all,
-    styled,
-)
+from burridge_knopoff.figures.strips import show_all
+from burridge_knopoff.figures.style import begin_at_zero, label_panels, legend_below, page_width, say, styled
 from burridge_knopoff.motion.kind import MotionKind
 
 TITLE = "Edge states"

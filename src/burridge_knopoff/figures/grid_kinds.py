@@ -11,7 +11,8 @@ from matplotlib.patches import Patch
 
 from burridge_knopoff.figures.palette import KINDS
 from burridge_knopoff.figures.parameter_panels import draw_panels
-from burridge_knopoff.figures.style import draw_strips, legend_below, styled
+from burridge_knopoff.figures.strips import draw_strips
+from burridge_knopoff.figures.style import legend_below, styled
 from burridge_knopoff.motion.kind import MotionKind
 
 TITLE = "Kinds of motion over the parameters"

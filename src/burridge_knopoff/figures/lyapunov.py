@@ -9,16 +9,8 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import NullLocator
 
 from burridge_knopoff.figures.palette import KINDS
-from burridge_knopoff.figures.style import (
-    label_panels,
-    legend_below,
-    legend_entries,
-    panel_table,
-    say,
-    show_all,
-    strips,
-    styled,
-)
+from burridge_knopoff.figures.strips import show_all, strips
+from burridge_knopoff.figures.style import label_panels, legend_below, legend_entries, panel_table, say, styled
 from burridge_knopoff.motion.kind import MotionKind
 
 TITLE = "Lyapunov exponents"

@@ -17,16 +17,15 @@ from matplotlib.patches import Patch
 from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.figures.branches import branch_colors, named_colors
 from burridge_knopoff.figures.palette import UNDETERMINED, state_symbol
+from burridge_knopoff.figures.strips import draw_strips, show_all
 from burridge_knopoff.figures.style import (
     begin_at_zero,
-    draw_strips,
     label_panels,
     legend_below,
     legend_inside,
     page_width,
     panel_table,
     say,
-    show_all,
     styled,
 )
 

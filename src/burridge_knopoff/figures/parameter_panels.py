@@ -15,16 +15,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from burridge_knopoff.figures.model_words import fixed_numbers, parameter_words, symbol
-from burridge_knopoff.figures.style import (
-    ACROSS,
-    COLUMN,
-    PAGE,
-    even_indices,
-    label_panels,
-    map_cells,
-    new_figure,
-    show_all,
-)
+from burridge_knopoff.figures.strips import map_cells, show_all
+from burridge_knopoff.figures.style import ACROSS, COLUMN, PAGE, even_indices, label_panels, new_figure
 
 #: Most values of each further parameter that have panels.
 MOST = 6

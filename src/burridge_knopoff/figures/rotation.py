@@ -10,7 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.palette import KINDS
-from burridge_knopoff.figures.style import label_panels, legend_below, panel_table, say, show_all, styled
+from burridge_knopoff.figures.strips import show_all
+from burridge_knopoff.figures.style import label_panels, legend_below, panel_table, say, styled
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.summaries.plateaux import locked_share, plateaux
 

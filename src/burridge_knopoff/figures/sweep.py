@@ -17,7 +17,8 @@ from burridge_knopoff.figures.model_words import constant, fixed_numbers, symbol
 from burridge_knopoff.figures.palette import dashes, law_color, law_symbol, state_symbol
 from burridge_knopoff.figures.parameter_panels import draw_map, panel_parts, varied_parameters
 from burridge_knopoff.figures.single_panel import draw_panel
-from burridge_knopoff.figures.style import begin_at_zero, say, show_all
+from burridge_knopoff.figures.strips import show_all
+from burridge_knopoff.figures.style import begin_at_zero, say
 
 LABEL = r"$\langle J\rangle$"
 

@@ -12,17 +12,8 @@ from matplotlib.patches import Patch
 
 from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.figures.palette import law_symbol
-from burridge_knopoff.figures.style import (
-    PAGE,
-    SHADE,
-    draw_strips,
-    label_panels,
-    legend_below,
-    legend_entries,
-    say,
-    show_all,
-    styled,
-)
+from burridge_knopoff.figures.strips import SHADE, draw_strips, show_all
+from burridge_knopoff.figures.style import PAGE, label_panels, legend_below, legend_entries, say, styled
 
 TITLE = "Two blocks"
 CATEGORY = "Friction laws"

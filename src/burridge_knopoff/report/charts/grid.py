@@ -9,7 +9,7 @@ import plotly.graph_objects as go
 import xarray
 
 from burridge_knopoff.figures.parameter_panels import panel_parts, varied_parameters
-from burridge_knopoff.figures.style import map_cells
+from burridge_knopoff.figures.strips import map_cells
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.report.charts.look import axis, chart
 from burridge_knopoff.report.charts.theme import SCALE

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import plotly.graph_objects as go
 
-from burridge_knopoff.figures.style import strip_columns, strip_range
+from burridge_knopoff.figures.strips import strip_columns, strip_range
 from burridge_knopoff.report.charts.theme import FONT, INK, dark_colors
 
 #: Plotly's names of matplotlib's markers.
