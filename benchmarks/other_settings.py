@@ -2,8 +2,9 @@
 
     python benchmarks/other_settings.py results/paper
 
-For docs/attractors.md the uncertainty exponents from ten times the pairs, and which phases synchronize by how much the
-inner block oscillates; for docs/bifurcations.md where the orbit with 9, 9 and 6 stops is born. It takes some minutes.
+For docs/attractors.md the uncertainty exponents from ten times the pairs; for docs/synchronization.md which phases
+synchronize by how much the inner block oscillates; for docs/bifurcations.md where the orbit with 9, 9 and 6 stops is
+born. It takes some minutes.
 """
 
 from __future__ import annotations

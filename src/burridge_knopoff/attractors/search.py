@@ -1,4 +1,4 @@
-"""The search for the attractors of one model from initial states; docs/search.md shows it as a diagram.
+"""The search for the attractors of one model from initial states; docs/search.md says what a user can set.
 
 `continuation` follows attractors along a, `basins` maps their basins, and `summaries.attractors` writes them to a file.
 """

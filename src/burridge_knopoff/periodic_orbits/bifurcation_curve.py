@@ -80,12 +80,12 @@ def follow_bifurcation(
 
     The curve also ends where the bifurcation becomes another one, for example a grazing where the orbit grazes twice.
     Its ends may lie one step beyond the interval. `errors` are half the widths of brackets perpendicular to the curve;
-    at a grazing they are the remaining distance to it.
+    at a grazing they are the remaining distance to it. A grazing is approached from the side on which the orbits have
+    the same stops as the first orbit.
 
     Raises OrbitError if the given bifurcation cannot be reproduced, and ValueError, one line, for a wrong argument.
 
-    Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Section 10.3;
-    docs/bifurcations.md explains the method where orbits graze.
+    Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Section 10.3.
 
     >>> from burridge_knopoff import Chain, Model, follow, follow_bifurcation, law_of, locate_bifurcations
     >>> from burridge_knopoff import synchronized_orbit
