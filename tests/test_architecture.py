@@ -1,4 +1,4 @@
-"""docs/architecture.md: subpackages import only from those below them, and every file that the page names exists."""
+"""The map in docs/extending.md: subpackages import only from those below them, and every file that it names exists."""
 
 import ast
 import re
@@ -9,7 +9,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "src" / "burridge_knopoff"
-PAGE = (ROOT / "docs" / "architecture.md").read_text()
+PAGE = (ROOT / "docs" / "extending.md").read_text()
 PICTURE = PAGE.split("```text\n")[1].split("```")[0]
 NAMED = [name for name in re.findall(r"`([\w/]+(?:\.\w+)?/?)`", PAGE) if "/" in name]
 
