@@ -31,8 +31,9 @@ def run(options: argparse.Namespace) -> int:
     parser = build_parser()
     for option in _options(parser):
         option.choices = getattr(option, "words", option.choices)
-        if option.metavar in kinds:
-            option.complete = kinds[option.metavar]  # type: ignore[attr-defined]
+        kind = f"{option.metavar}".partition("|")[0]
+        if kind in kinds:
+            option.complete = kinds[kind]  # type: ignore[attr-defined]
     print(shtab.complete(parser, options.shell))
     return 0
 

@@ -92,7 +92,7 @@ _METAVARS = {
     "pulling_damping": "C1,C2,...",
     "weakening": "W1,W2,...",
     "grid": "NX,NY",
-    "springs": "FILE",
+    "springs": "FILE|distance=FORMULA",
     "position": "U1,U2,...",
     "velocity": "U1',U2',...",
 }
