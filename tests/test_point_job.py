@@ -58,7 +58,8 @@ def test_a_process_makes_the_same_point(tmp_path):
     run_point_command(f"{command} --out {path}", str(path), str(log), str(results))
     assert path.read_bytes() == expected
     ((wall, cpu, _),) = job_costs(results / "benchmarks/simulate/nonlinear/0.0500.tsv")
-    assert wall > cpu > 0.0
+    assert cpu > 0.0
+    assert wall > 0.0
     with pytest.raises(RuntimeError, match="was not made, see"):
         run_point_command(f"{command} --v -1 --out {path}", str(path), str(log), str(results))
     assert log.read_text().startswith("bk simulate: v: got -1.0")

@@ -1,6 +1,6 @@
 """Periods of section points and kinds of motion."""
 
-from dataclasses import replace
+from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
@@ -286,7 +286,8 @@ def test_motion_that_repeats_at_its_stops_may_leave_its_orbit(growth, exponent, 
     run |= {"lyapunov_exponent": np.array([exponent, -1e-5]), "lyapunov_error": np.full(2, 8e-4)}
     motion = motion_of_completed_run(run, 0.1, MOTION)
     leaves = growth > (1.0 if exponent > MOTION.zero_exponent else 2.0)
-    assert motion == (Motion(MotionKind.UNDETERMINED) if leaves else Motion(MotionKind.PERIODIC, 0, 50.0))
+    expected = Motion(MotionKind.UNDETERMINED) if leaves else Motion(MotionKind.PERIODIC, 0, 50.0)
+    np.testing.assert_equal(astuple(motion), astuple(expected))
 
 
 @pytest.mark.parametrize("away", [1e-11, 1e-10])

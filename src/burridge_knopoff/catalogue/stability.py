@@ -147,14 +147,14 @@ def _rest_times(model: Model, start: ChainState, edges: np.ndarray) -> np.ndarra
 
 
 def event_multipliers(model: Model, state: ChainState, end: float, *, loading: str = "quasistatic") -> np.ndarray:
-    """Return the multipliers of the events between two times of rest, in descending order of modulus, shape (blocks,).
+    """Return the multipliers of the events between two times of rest, complex, shape (blocks,).
 
     model, state, end : a state in which all blocks stick, none beyond its threshold, and τ of another such state; for
         the multipliers of periodic motion, one period later
     loading : see `record_events`
 
-    The multipliers are the eigenvalues of the linear map of displacements of the blocks by the events. Under
-    quasi-static loading one of them is 0, since the threshold fixes one displacement.
+    The multipliers are the eigenvalues of the linear map of displacements of the blocks by the events, in descending
+    order of modulus. Under quasi-static loading one of them is 0, since the threshold fixes one displacement.
 
     Raises ValueError, one line, as `record_events` does, if a block slips at the start or at the end, if perturbations
     overflow, and where they have no linear growth, as `event_exponents` does.
@@ -163,7 +163,7 @@ def event_multipliers(model: Model, state: ChainState, end: float, *, loading: s
     >>> model = Model(Chain(1, pulling=1), law_of("carlson_langer", 0.0, {"sigma": 0.2}), v=1.0)
     >>> start = model.begin(InitialState("rest", (-0.8,), 0.0), "tested")
     >>> event_multipliers(model, start, 0.5).tolist()
-    [0.0]
+    [0j]
     """
     instance_of(model, Model, "model")
     instance_of(state, ChainState, "state")
@@ -188,5 +188,5 @@ def event_multipliers(model: Model, state: ChainState, end: float, *, loading: s
     product = runner.perturbations[:blocks]
     if not np.isfinite(product).all():
         raise refusal("end", end, "a time before perturbations overflow")
-    values = np.linalg.eigvals(product)
+    values = np.linalg.eigvals(product).astype(complex)
     return values[np.argsort(-np.abs(values), kind="stable")]
