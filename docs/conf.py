@@ -8,6 +8,8 @@ import re
 import shutil
 from pathlib import Path
 
+from docutils import nodes
+from PIL import Image
 from sphinx.application import Sphinx
 
 import burridge_knopoff as library
@@ -19,6 +21,8 @@ html_title = f"{project} {release}"
 html_theme = "furo"
 html_copy_source = False
 html_show_copyright = False
+html_static_path = ["site.css"]
+html_css_files = ["site.css"]
 # The prime of a velocity is not a quotation mark.
 smartquotes = False
 
@@ -36,6 +40,9 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "none"
 default_role = "py:obj"
 
+# Pixels of a figure as wide as a page.
+FULL_WIDTH = 1400
+
 BOX = re.compile(r'^ *(?:subgraph )?(\w+)[\[{]"(.*)"[\]}]$', re.MULTILINE)
 ITEM = r"[a-zA-Z_][\w, ]* : "
 ARROW = re.compile(r"(\w+) -->(?:\|(.*?)\|)? (?=(\w+))")
@@ -44,6 +51,7 @@ ARROW = re.compile(r"(\w+) -->(?:\|(.*?)\|)? (?=(\w+))")
 def setup(app: Sphinx) -> None:
     """Register what Sphinx calls."""
     app.connect("source-read", complete)
+    app.connect("doctree-read", scale)
     app.connect("autodoc-process-signature", shorten)
     app.connect("autodoc-process-docstring", lay_out)
     app.connect("build-finished", add_index)
@@ -64,6 +72,16 @@ def complete(app: Sphinx, page: str, source: list[str]) -> None:
             kind = "class" if inspect.isclass(getattr(library, name)) else "function"
             text += f"\n```{{eval-rst}}\n.. auto{kind}:: burridge_knopoff.{name}\n```\n"
     source[0] = text
+
+
+def scale(app: Sphinx, page: nodes.document) -> None:
+    """Give the figures of a page one scale, so that their letters are equally large."""
+    for image in page.findall(nodes.image):
+        # Pictures side by side share the width of their table.
+        if not isinstance(image.parent.parent, nodes.section):
+            continue
+        with Image.open(Path(app.srcdir, image["uri"])) as picture:
+            image["width"] = f"{min(100, round(100 * picture.width / FULL_WIDTH))}%"
 
 
 def table(chart: str) -> str:

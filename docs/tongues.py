@@ -37,7 +37,7 @@ from burridge_knopoff import (
 )
 from burridge_knopoff.figures.palette import KINDS, SYNCHRONIZED, ramp
 from burridge_knopoff.figures.strips import cells
-from burridge_knopoff.figures.style import PAGE, label_panels, new_figure, styled, write_figure
+from burridge_knopoff.figures.style import PAGE, label_panels, new_figure, styled
 from burridge_knopoff.motion.rotation import rotation_number
 
 PICTURE = Path(__file__).parent / "figures" / "tongues.png"
@@ -317,7 +317,7 @@ def main() -> None:
     print("a, coupling")
     tongues = rotation_tongues()
     check_rotation(tongues)
-    write_figure(draw(classes, synchrony, inner, fold, tongues), PICTURE)
+    draw(classes, synchrony, inner, fold, tongues).savefig(PICTURE, dpi=200)
 
 
 if __name__ == "__main__":

@@ -111,6 +111,8 @@ def _map(panel: Axes, basins: xarray.Dataset, parts: Sequence[MapPart], number: 
         picture[part.members[number]] = to_rgb(part.color)
     panel.imshow(picture, origin="lower", extent=_extent(basins), interpolation="nearest", aspect="auto")
     panel.set_box_aspect(1.0)
+    # The layout takes the place above a panel from its top.
+    panel.set_anchor("N")
     blocks = np.size(basins.attrs["plane_position"])
     panel.set(xlabel="$U_1(0)$", ylabel=f"$U_{{{blocks}}}(0)$" if blocks > 1 else "$U_1'(0)$")
 
