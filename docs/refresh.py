@@ -74,7 +74,7 @@ def branch_table(attractors: xarray.Dataset) -> str:
 
     attractors : attractors.nc
     """
-    rows = ["| branch | law | a | values of a | ⟨J⟩ | kinds of motion |", "| --- | --- | --- | ---: | --- | --- |"]
+    rows = ["| branch | law | range of a | grid values | ⟨J⟩ | kinds of motion |", "| --- | --- | --- | ---: | --- | --- |"]
     names = branch_names(attractors)
     short = 0
     for number, name in sorted(names.items()):
