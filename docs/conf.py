@@ -36,9 +36,7 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "none"
 default_role = "py:obj"
 
-BOX = re.compile(r'^ *(?:subgraph )?(\w+)[\[{]"(.*)"[\]}]$', re.MULTILINE)
 ITEM = r"[a-zA-Z_][\w, ]* : "
-ARROW = re.compile(r"(\w+) -->(?:\|(.*?)\|)? (?=(\w+))")
 
 
 def setup(app: Sphinx) -> None:
@@ -51,9 +49,8 @@ def setup(app: Sphinx) -> None:
 
 def complete(app: Sphinx, page: str, source: list[str]) -> None:
     """Add a table of contents to the README, from its list of pages, and every public name to docs/api.md."""
-    text = re.sub(r"```mermaid\n(.*?)```", lambda chart: table(chart[1]), source[0], flags=re.DOTALL)
     # A block that is a file has its path after the language, which no page shows.
-    text = re.sub(r"^(```\w+) (\S+)$", r"`\2`\n\n\1", text, flags=re.MULTILINE)
+    text = re.sub(r"^(```\w+) (\S+)$", r"`\2`\n\n\1", source[0], flags=re.MULTILINE)
     if page == root_doc:
         listed = text.split("## Documentation")[1].split("\n## ")[0]
         for caption, links in re.findall(r"^- ([\w, ]+): (.*(?:\n  .*)*)", listed, re.MULTILINE):
@@ -64,21 +61,6 @@ def complete(app: Sphinx, page: str, source: list[str]) -> None:
             kind = "class" if inspect.isclass(getattr(library, name)) else "function"
             text += f"\n```{{eval-rst}}\n.. auto{kind}:: burridge_knopoff.{name}\n```\n"
     source[0] = text
-
-
-def table(chart: str) -> str:
-    """Return a Mermaid chart as a table, because a browser would need an external program to draw it."""
-    for line in chart.splitlines()[1:]:
-        if not (BOX.match(line) or ARROW.search(line) or line.strip() == "end"):
-            raise ValueError(f"{line.strip()}: neither a box nor an arrow of a chart")
-    boxes = BOX.findall(chart)
-    number = {name: count for count, (name, _) in enumerate(boxes, start=1)}
-    rows = ["| step | what is done | next step |", "| ---: | --- | --- |"]
-    for name, text in boxes:
-        arrows = [arrow for arrow in ARROW.findall(BOX.sub("", chart)) if arrow[0] == name]
-        following = "<br>".join(f"{condition} → {number[to]}" for _, condition, to in arrows)
-        rows.append(f"| {number[name]} | {text} | {following} |")
-    return "\n".join(rows)
 
 
 def shorten(
