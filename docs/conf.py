@@ -43,9 +43,7 @@ default_role = "py:obj"
 # Pixels of a figure as wide as a page.
 FULL_WIDTH = 1400
 
-BOX = re.compile(r'^ *(?:subgraph )?(\w+)[\[{]"(.*)"[\]}]$', re.MULTILINE)
 ITEM = r"[a-zA-Z_][\w, ]* : "
-ARROW = re.compile(r"(\w+) -->(?:\|(.*?)\|)? (?=(\w+))")
 
 
 def setup(app: Sphinx) -> None:
@@ -59,9 +57,8 @@ def setup(app: Sphinx) -> None:
 
 def complete(app: Sphinx, page: str, source: list[str]) -> None:
     """Add a table of contents to the README, from its list of pages, and every public name to docs/api.md."""
-    text = re.sub(r"```mermaid\n(.*?)```", lambda chart: table(chart[1]), source[0], flags=re.DOTALL)
     # A block that is a file has its path after the language, which no page shows.
-    text = re.sub(r"^(```\w+) (\S+)$", r"`\2`\n\n\1", text, flags=re.MULTILINE)
+    text = re.sub(r"^(```\w+) (\S+)$", r"`\2`\n\n\1", source[0], flags=re.MULTILINE)
     if page == root_doc:
         listed = text.split("## Documentation")[1].split("\n## ")[0]
         for caption, links in re.findall(r"^- ([\w, ]+): (.*(?:\n  .*)*)", listed, re.MULTILINE):
@@ -82,21 +79,6 @@ def scale(app: Sphinx, page: nodes.document) -> None:
             continue
         with Image.open(Path(app.srcdir, image["uri"])) as picture:
             image["width"] = f"{min(100, round(100 * picture.width / FULL_WIDTH))}%"
-
-
-def table(chart: str) -> str:
-    """Return a Mermaid chart as a table, because a browser would need an external program to draw it."""
-    for line in chart.splitlines()[1:]:
-        if not (BOX.match(line) or ARROW.search(line) or line.strip() == "end"):
-            raise ValueError(f"{line.strip()}: neither a box nor an arrow of a chart")
-    boxes = BOX.findall(chart)
-    number = {name: count for count, (name, _) in enumerate(boxes, start=1)}
-    rows = ["| step | what is done | next step |", "| ---: | --- | --- |"]
-    for name, text in boxes:
-        arrows = [arrow for arrow in ARROW.findall(BOX.sub("", chart)) if arrow[0] == name]
-        following = "<br>".join(f"{condition} → {number[to]}" for _, condition, to in arrows)
-        rows.append(f"| {number[name]} | {text} | {following} |")
-    return "\n".join(rows)
 
 
 def shorten(

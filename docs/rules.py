@@ -1,20 +1,24 @@
-"""Draw the rules of the default study as a chart in docs/results.md: `python docs/rules.py`."""
+"""Write what is computed from what in the default study into docs/results.md: `python docs/rules.py`."""
 
 from __future__ import annotations
 
 import re
 import subprocess
 import sys
+from collections import defaultdict
+from collections.abc import Iterable
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 from burridge_knopoff.provenance.files import write_text
 
 PAGE = Path(__file__).parent / "results.md"
-CHART = re.compile(r"```mermaid\n.*?```\n", re.DOTALL)
-#: Rules of one stage are one box.
-STAGES = {"basin_tile": "basins", "basin_pairs": "basins", "simulate_solver": "solvers"}
-#: What is not a summary.
-ENDS = ("simulate", "figures", "claims", "report")
+BEGIN, END = "<!-- made by `python docs/rules.py` -->\n", "<!-- end -->\n"
+TABLE = re.compile(f"{BEGIN}.*?{END}", re.DOTALL)
+#: Rules that belong to a stage of another name.
+STAGES = {"basin_tile": "basins", "basin_pairs": "basins", "simulate_solver": "solvers", "simulate": "points"}
+#: What is computed from all or nearly all summaries.
+ENDS = ("claims", "figures", "report")
 
 
 def stage(rule: str) -> str:
@@ -31,17 +35,30 @@ def arrows(graph: str) -> set[tuple[str, str]]:
     return {(source, target) for source, target in pairs if source != target and target != "all"}
 
 
-def chart(graph: str) -> str:
-    """Return the stages and what they read, with all summaries in one box for figures, claims and report."""
-    pairs = arrows(graph)
-    summaries = sorted({name for pair in pairs for name in pair} - {*ENDS})
-    lines = ["flowchart LR", '  simulate["simulate: points"]']
-    lines += ['  subgraph summary["summaries"]', *(f'    {name}["{name}"]' for name in summaries), "  end"]
-    lines += [f"  {source} --> {target}" for source, target in sorted(pairs) if target in summaries]
-    lines += ['  figures["figures"]', '  claims["claims"]', '  report["report"]']
-    lines += ["  summary --> figures", "  summary --> claims"]
-    lines += [f"  {source} --> {target}" for source, target in sorted(pairs) if {source, target} < {*ENDS}]
-    return "```mermaid\n" + "\n".join(lines) + "\n```\n"
+def table(graph: str) -> str:
+    """Return a table of the stages and their sources; those with the same sources share a row, sources come first."""
+    sources: dict[str, set[str]] = {name: set() for pair in arrows(graph) for name in pair}
+    for source, target in arrows(graph):
+        sources[target].add(source)
+    summaries = {*sources} - {*ENDS, "points"}
+    rank: dict[str, int] = {}
+    for name in TopologicalSorter(sources).static_order():
+        rank[name] = max((rank[source] + 1 for source in sources[name]), default=0)
+    stages = defaultdict(list)
+    for name in sorted({"points"} | summaries, key=lambda name: (rank[name], name)):
+        stages[listed(sources[name]) or "the config alone"].append(name)
+    rows = [(listed(names), text) for text, names in stages.items()]
+    for name in ENDS:
+        left_out = listed(summaries - sources[name])
+        parts = [listed(sources[name] - summaries), "all summaries" + (f" but {left_out}" if left_out else "")]
+        rows.append((listed([name]), ", ".join(filter(None, parts))))
+    lines = ["| stage | computed from |", "| --- | --- |", *(f"| {names} | {text} |" for names, text in rows)]
+    return BEGIN + "\n".join(lines) + "\n" + END
+
+
+def listed(names: Iterable[str]) -> str:
+    """Return the names of stages as a list in words, points first."""
+    return ", ".join(f"`{name}`" for name in sorted(names, key=lambda name: (name != "points", name)))
 
 
 def rule_graph() -> str:
@@ -51,9 +68,9 @@ def rule_graph() -> str:
 
 
 def main() -> None:
-    """Replace the chart of the page."""
-    new = chart(rule_graph())
-    write_text(PAGE, CHART.sub(lambda _: new, PAGE.read_text(encoding="utf-8")))
+    """Replace the table of the page."""
+    new = table(rule_graph())
+    write_text(PAGE, TABLE.sub(lambda _: new, PAGE.read_text(encoding="utf-8")))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""docs/results.md: its chart is Snakemake's graph of rules, which fits a screen, and each summary has a question."""
+"""docs/results.md: its table is that of the rules, whose graph fits a screen, and each summary has a question."""
 
 import re
 import runpy
@@ -11,13 +11,13 @@ from tests.workflow.planned import planned
 
 
 @pytest.mark.slow
-def test_the_chart_is_that_of_the_rules(repository):
+def test_the_table_is_that_of_the_rules(repository):
     rules = runpy.run_path(str(repository / "docs/rules.py"))
     graph = rules["rule_graph"]()
     page = (repository / "docs/results.md").read_text(encoding="utf-8")
-    assert rules["chart"](graph) in page
+    assert rules["table"](graph) in page
     # Arrows that must be present: from points to figures, and from attractors to basins.
-    assert {("simulate", "figures"), ("attractors", "basins"), ("claims", "report")} <= rules["arrows"](graph)
+    assert {("points", "figures"), ("attractors", "basins"), ("claims", "report")} <= rules["arrows"](graph)
 
 
 @pytest.mark.slow
