@@ -74,7 +74,8 @@ def branch_table(attractors: xarray.Dataset) -> str:
 
     attractors : attractors.nc
     """
-    rows = ["| branch | law | range of a | grid values | ⟨J⟩ | kinds of motion |", "| --- | --- | --- | ---: | --- | --- |"]
+    head = "| branch | law | range of a | grid values | ⟨J⟩ | kinds of motion |"
+    rows = [head, "| --- | --- | --- | ---: | --- | --- |"]
     names = branch_names(attractors)
     short = 0
     for number, name in sorted(names.items()):

@@ -45,7 +45,7 @@ def simulate(
     ValueError, one line, for anything that the model or the solver does not allow, and for a setting with the name of a
     parameter of the law. Warns of a run of more than a minute whose step is set by stiff dashpots or springs, and if it
     continues a run of another model: the positions relative to the driver, the velocities and the stuck blocks are
-    kept. docs/model.md derives the equations and the solvers, and explains why no event can be missed.
+    kept. docs/model.md derives the equations and the solvers, and explains why no event is missed.
 
     >>> from burridge_knopoff import simulate
     >>> run = simulate("linearized", 0.08, "plus", transient=100, window=100, batches=2)
