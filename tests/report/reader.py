@@ -5,6 +5,8 @@ import unicodedata
 import netCDF4
 import pytest
 
+from burridge_knopoff.report.verdicts import SIGNS
+
 # Text of every element whose contrast with what lies behind it is below WCAG AA, and none that a chart draws.
 LOW_CONTRAST = """() => {
   const parse = (color) => (color.match(/[\\d.]+/g) ?? []).map(Number);
@@ -174,19 +176,24 @@ def check_blocks(page):
 
 
 def check_filter(page, content):
-    """Statements are shown by verdict, and without those that follow from others; a link opens its folds.
+    """Statements and their counts are shown by verdict, at first the independent ones; a link opens its folds.
 
     content : the file of verdicts
     """
     cards = page.locator("#verdicts [data-verdict][id]:visible")
     assert cards.count() == 0
-    verdict = next(name for name, count in content["counts"].items() if count and name != "not testable")
+    only = page.locator("#independent-only")
+    assert only.is_checked()
+    verdict = next(name for name, count in content["independent_counts"].items() if count and name != "not testable")
     page.locator(f'[data-shows="{verdict}"]').click()
-    assert cards.count() == content["counts"][verdict]
-    page.locator("#independent-only").check()
-    assert cards.count() == content["independent_counts"][verdict]
+    for checked, key in ((False, "counts"), (True, "independent_counts")):
+        only.set_checked(checked)
+        counts = [f"{SIGNS[name]} {name}: {count}" for name, count in content[key].items() if count]
+        assert page.locator("[data-shows]:visible").all_inner_texts() == counts
+        assert cards.count() == content[key][verdict]
     # A statement that is hidden is shown if a link leads to it.
-    name = next(claim["name"] for claim in content["claims"] if claim["verdict"] not in (verdict, "not testable"))
+    others = [claim for claim in content["claims"] if claim["verdict"] not in (verdict, "not testable")]
+    name = max(others, key=lambda claim: len(claim["depends_on"]))["name"]
     page.evaluate("(name) => { location.hash = `#claim-${name}`; }", name)
     card = page.locator(f"#claim-{name}")
     card.locator("details[open]").wait_for()

@@ -64,7 +64,8 @@ def test_the_report_of_a_study(browser, reported):
     assert {"run-law", "run-initial", "run-a", "run-next", "run-copy"} <= set(reached)
     assert sum(name.startswith("⟨J⟩ against a, ") for name in reached) == 2
     check_branches(page)
-    check_filter(page, json.loads((results / "summary" / "claims.json").read_text()))
+    content = json.loads((results / "summary" / "claims.json").read_text())
+    check_filter(page, content)
     check_address(page, results)
     page.goto("about:blank")
     page.goto(reader.url)
@@ -129,8 +130,11 @@ def test_the_report_of_a_study(browser, reported):
     assert page.evaluate(paper) == light[0]
     assert page.locator(".chart").first.is_hidden()
     assert page.locator("#further").is_hidden()
+    independent = content["independent_counts"]
+    assert page.locator(".card:visible").count() == sum(independent.values()) - independent["not testable"]
+    width = page.locator("main").bounding_box()["width"]
     for picture in page.locator(".picture:not(#further .picture) img").all():
-        assert picture.is_visible()
+        assert picture.bounding_box()["width"] > 0.59 * width
         assert picture.evaluate("image => image.decode().then(() => image.naturalWidth)") >= 900
     assert len(re.findall(rb"/Type\s*/Page\b", page.pdf(format="A4"))) < 10
     paper_reader.close()

@@ -1,33 +1,35 @@
 // Statements: shown by verdict, and all of them if a link leads to one that is hidden.
-const shown = { verdict: "", independent: false };
+let shownVerdict = "";
 
+/** Hide what is not chosen; the style sheet hides the statements that depend on others. */
 function showClaims() {
-  const chosen = Boolean(shown.verdict || shown.independent);
-  const cards = [...document.querySelectorAll("[data-verdict]")];
-  for (const card of cards)
-    card.hidden = Boolean(shown.verdict && card.dataset.verdict !== shown.verdict) || (shown.independent && "dependent" in card.dataset);
-  for (const topic of document.querySelectorAll(".topic")) {
-    topic.hidden = [...topic.querySelectorAll("[data-verdict]")].every((card) => card.hidden);
-    topic.open = chosen;
-  }
-  byId("shown-count").textContent = chosen ? `${cards.filter((card) => !card.hidden).length} shown` : "";
+  document.querySelectorAll("[data-verdict]").forEach((card) => {
+    card.hidden = Boolean(shownVerdict) && card.dataset.verdict !== shownVerdict;
+  });
+  const shown = `[data-verdict]:not([hidden]${byId("independent-only").checked ? ", [data-dependent]" : ""})`;
+  document.querySelectorAll(".topic").forEach((topic) => { topic.hidden = !topic.querySelector(shown); });
+  byId("shown-count").textContent = shownVerdict ? `${document.querySelectorAll(shown).length} shown` : "";
   document.querySelectorAll("[data-shows]").forEach((button) =>
-    button.setAttribute("aria-pressed", button.dataset.shows === shown.verdict));
+    button.setAttribute("aria-pressed", button.dataset.shows === shownVerdict));
+}
+
+/** Show the statements with one verdict in open topics, or those with any in closed ones. */
+function chooseVerdict(verdict) {
+  shownVerdict = verdict;
+  document.querySelectorAll(".topic").forEach((topic) => { topic.open = Boolean(verdict); });
+  showClaims();
 }
 
 /** Show all statements if this one is hidden. */
 function showClaim(place) {
-  if (!place.hidden || !("verdict" in place.dataset)) return;
-  Object.assign(shown, { verdict: "", independent: false });
-  byId("independent-only").checked = false;
-  showClaims();
+  if (!("verdict" in place.dataset)) return;
+  if ("dependent" in place.dataset) byId("independent-only").checked = false;
+  if (place.hidden) chooseVerdict("");
+  else showClaims();
 }
 
 function startClaims() {
-  if (!byId("independent-only")) return;
-  byId("independent-only").addEventListener("change", (event) => { shown.independent = event.target.checked; showClaims(); });
-  document.querySelectorAll("[data-shows]").forEach((button) => button.addEventListener("click", () => {
-    shown.verdict = button.dataset.shows === shown.verdict ? "" : button.dataset.shows;
-    showClaims();
-  }));
+  byId("independent-only")?.addEventListener("change", showClaims);
+  document.querySelectorAll("[data-shows]").forEach((button) => button.addEventListener("click", () =>
+    chooseVerdict(button.dataset.shows === shownVerdict ? "" : button.dataset.shows)));
 }
