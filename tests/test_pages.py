@@ -31,6 +31,7 @@ SHORT = {
 @pytest.mark.parametrize("page", SHORT)
 def test_short_sections(repository, tmp_path, monkeypatch, page):
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "docs/figures").mkdir(parents=True)
     results = outputs((repository / "docs" / page).read_text(), f"docs/{page}", set(SHORT[page]))
     assert Counter(block.heading for block, _, _ in results) == SHORT[page]
     for _, expected, printed in results:
