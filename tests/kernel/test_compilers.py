@@ -28,7 +28,8 @@ CHAINS = (
     Chain(grid=(4, 3), coupling=2.0, mass=1.5),
     Chain(5, ends="ring"),
     Chain(3, damping=0.2, pulling_damping=0.1),
-    Chain(4, weakening=(1.0, -0.02, 0.0, 2.0), damping=0.1),
+    # The end blocks are equal: the program takes the distance of their positions of uniform sliding to be 0.
+    Chain(5, weakening=(2.0, -0.02, 0.0, -0.02, 2.0), damping=0.1),
     # This one moves in groups.
     Chain(26, damping=0.1),
     Chain(26),
