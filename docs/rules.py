@@ -37,9 +37,8 @@ def arrows(graph: str) -> set[tuple[str, str]]:
 
 def table(graph: str) -> str:
     """Return a table of the stages and their sources; those with the same sources share a row, sources come first."""
-    sources: dict[str, set[str]] = {name: set() for pair in arrows(graph) for name in pair}
-    for source, target in arrows(graph):
-        sources[target].add(source)
+    pairs = arrows(graph)
+    sources = {name: {source for source, target in pairs if target == name} for pair in pairs for name in pair}
     summaries = {*sources} - {*ENDS, "points"}
     rank: dict[str, int] = {}
     for name in TopologicalSorter(sources).static_order():

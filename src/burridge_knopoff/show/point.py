@@ -19,6 +19,9 @@ from burridge_knopoff.show.result import Result
 from burridge_knopoff.study.formatting import format_count, to_ascii, with_error
 from burridge_knopoff.summaries.text_table import UNLIMITED, table
 
+# Options of a chain that are listed only if they differ from their defaults.
+RARE = ("damping", "pulling_damping", "weakening")
+
 
 def point_lines(result: Result, width: int = UNLIMITED) -> list[str]:
     """Return a description of a point file, one row for each fact, in lines of at most a width."""
@@ -47,8 +50,7 @@ def _model(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
     options = {
         key: attributes[name] for key in CHAIN_OPTIONS if key != "ends" and (name := f"chain_{key}") in attributes
     }
-    usual = {"damping": 0.0, "pulling_damping": 0.0, "weakening": 1.0}
-    options = {key: value for key, value in options.items() if key not in usual or np.any(value != usual[key])}
+    options = {key: value for key, value in options.items() if key not in RARE or np.any(value != getattr(Chain, key))}
     chain = ", ".join(f"{key} {_text(value)}" for key, value in options.items())
     yield "chain", f"{point.sizes['block']} blocks, {attributes['chain_ends']}: {chain}"
     numbers = [
