@@ -4,6 +4,7 @@ import unicodedata
 
 import netCDF4
 import pytest
+from playwright.sync_api import expect
 
 from burridge_knopoff.report.verdicts import SIGNS
 
@@ -107,8 +108,8 @@ def check_number(text, value, error):
 def check_run(page, results, law, initial, a):
     """Hold the panel against the point file of this run."""
     path = f"points/{law}/{initial}/a{a:.4f}.nc"
+    expect(page.locator("#run-file")).to_have_attribute("href", path, timeout=20_000)
     fields = detail(page)
-    assert page.locator("#run-file").get_attribute("href") == path
     with netCDF4.Dataset(results / path) as point:
         assert (point.law, point.initial, float(point["a"][...])) == (law, initial, a)
         mean, error = (float(point[name][...]) for name in ("mean_distance", "mean_distance_error"))
@@ -130,22 +131,23 @@ def check_run(page, results, law, initial, a):
 def click_run(page, law, initial, a):
     """Click on a point of a curve of ⟨J⟩."""
     chart = page.locator(f'.chart[data-chart="distance"][data-law="{law}"]')
-    chart.scroll_into_view_if_needed()
     x, y = chart.evaluate(
         """(box, [initial, a]) => {
           const trace = box._fullData.filter((trace) => trace.meta === "run")[initial];
           const { xaxis, yaxis } = box._fullLayout;
-          const place = box.getBoundingClientRect();
-          return [place.x + xaxis._offset + xaxis.d2p(trace.x[a]), place.y + yaxis._offset + yaxis.d2p(trace.y[a])];
+          return [xaxis._offset + xaxis.d2p(trace.x[a]), yaxis._offset + yaxis.d2p(trace.y[a])];
         }""",
         [initial, a],
     )
-    page.mouse.move(x - 1, y)
-    page.mouse.move(x, y)
+    # These wait until the chart has come to rest.
+    chart.hover(position={"x": x, "y": y})
     # A click is on what is under the pointer, which Plotly looks up a little later.
-    page.wait_for_function("box => box._hoverdata?.length", arg=chart.element_handle())
-    page.mouse.down()
-    page.mouse.up()
+    page.wait_for_function(
+        """([box, initial, a]) => box._hoverdata?.some(({ data, customdata, pointNumber }) =>
+          data.meta === "run" && customdata[0] === initial && pointNumber === a)""",
+        arg=[chart.element_handle(), initial, a],
+    )
+    chart.click(position={"x": x, "y": y})
 
 
 def under_pointer(page, kind):
