@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from burridge_knopoff import (
     BifurcationKind,
@@ -120,6 +121,8 @@ def test_a_sweep_over_one_parameter_laws_and_states():
         assert np.array_equal(line, [runs.v, values])
     looks = {(line.get_color(), line.get_marker()) for line in panel.lines if len(line.get_xdata())}
     assert len(looks) == 4
+    explained = {(line.get_color(), line.get_marker()) for line in figure.legends[0].findobj(Line2D)}
+    assert looks <= explained
     assert {*legend(figure)} == {"linearized law", "nonlinear law", "from minus", "from plus", "three standard errors"}
 
 

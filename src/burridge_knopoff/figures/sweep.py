@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 import xarray
 from matplotlib.axes import Axes
+from matplotlib.container import Container
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import AutoLocator
 
 from burridge_knopoff.figures import grid_distance
@@ -66,7 +68,10 @@ def _curves(panel: Axes, grid: xarray.Dataset) -> str:
     for n, law in enumerate(laws if many["law"] else ()):
         panel.plot([], [], **_look(n, 0, grid) | ({"marker": ""} if many["initial"] else {}), label=f"{law} law")
     for k, state in enumerate(states if many["initial"] else ()):
-        panel.plot([], [], **_look(0, k, grid) | ({"linestyle": ""} if many["law"] else {}), label=f"from {state}")
+        symbols = [
+            Line2D([], [], **_look(n, k, grid) | ({"linestyle": ""} if many["law"] else {})) for n in range(len(laws))
+        ]
+        panel.add_container(Container(symbols, label=f"from {state}"))
     panel.set(xlabel=f"${symbol(parameter)}$", ylabel=LABEL)
     _scale_to(panel, grid[parameter].values)
     if np.isfinite(grid["mean_distance"].values).any():
