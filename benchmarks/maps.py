@@ -49,7 +49,7 @@ def basins(pixels: int, threads: int) -> None:
     def label(side: int, threads: int) -> tuple[np.ndarray, np.ndarray]:
         axis = pixel_centres((-1.5, 1.5), side)
         position, velocity = plane(state.position, axis, axis, state.velocity)
-        return label_states(model, attractors, position, velocity, threads=threads)
+        return label_states(model, attractors, position, velocity, cores=threads)
 
     begin_time = time.perf_counter()
     labels, times = label(pixels, threads)

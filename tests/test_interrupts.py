@@ -26,7 +26,7 @@ from burridge_knopoff import find_attractors, label_states
 known, _ = find_attractors(model, **search)
 states = np.random.default_rng(1).uniform(-1.0, -0.9, (2_000_000, 3))
 print("begun", flush=True)
-label_states(model, known, states, 0.1 + 0.0 * states, threads={threads})
+label_states(model, known, states, 0.1 + 0.0 * states, cores={cores})
 """
 FUNCTION = """
 from burridge_knopoff{module} import {name}
@@ -48,14 +48,14 @@ PROGRAMS = {
     "fixed steps": function("record_events", "record_events(model, rest, 1e6, solver='euler')"),
     "exponents": function("event_exponents", "event_exponents(model, rest, 1e7, loading='steady')"),
     "search": function("find_attractors", "find_attractors(model.at(0.16), samples=10_000)"),
-    "labels": LABELS.format(threads=1),
-    "labels in threads": LABELS.format(threads=3),
-    "map": function("basin_map", "basin_map(model, pixels=1500, threads=2, **search)"),
+    "labels": LABELS.format(cores=1),
+    "labels in threads": LABELS.format(cores=3),
+    "map": function("basin_map", "basin_map(model, pixels=1500, cores=2, **search)"),
     "sweep": SWEEP,
     "processes": PROCESSES,
 }
 SEVERAL = {
-    "labels in threads": LABELS.format(threads=3),
+    "labels in threads": LABELS.format(cores=3),
     "sweep": SWEEP,
     "processes": PROCESSES,
     "threads of others": function("simulate", "list(ThreadPoolExecutor(2).map(slow, [0.1, 0.16]))"),
@@ -110,7 +110,7 @@ def test_a_second_ctrl_c_does_not_abort(program):
 
 @pytest.mark.parametrize("times", [1, 2])
 def test_ctrl_c_ends_a_command(times, tmp_path):
-    options = "--law linearized --a 0.08 --pixels 1500 --threads 2 --samples 2 --transient 500 --window 500"
+    options = "--law linearized --a 0.08 --pixels 1500 --cores 2 --samples 2 --transient 500 --window 500"
     out = tmp_path / "basins.nc"
     code, output, seconds = run_interrupted(COMMAND, times, "basins", *options.split(), "--out", out)
     assert code in (130, -signal.SIGINT) if times == 1 else code != -signal.SIGABRT

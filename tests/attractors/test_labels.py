@@ -97,10 +97,10 @@ def test_blocks_may_slip_backward_under_a_symmetric_contact():
     assert labels.tolist() == [UNDETERMINED] * 2
 
 
-@pytest.mark.parametrize("threads", [1, 2, 3, 7, 101])
-def test_labels_do_not_depend_on_the_number_of_threads(reached, threads):
+@pytest.mark.parametrize("cores", [1, 2, 3, 7, 101])
+def test_labels_do_not_depend_on_the_number_of_cores(reached, cores):
     orbit, states, (labels, times) = reached
-    shared = label_states(MODEL, [orbit], *states, time_limit=END, threads=threads)
+    shared = label_states(MODEL, [orbit], *states, time_limit=END, cores=cores)
     assert shared[0].tolist() == labels.tolist()
     assert shared[1].tolist() == times.tolist()
     assert len({*labels.tolist()}) == 2

@@ -1,4 +1,4 @@
-"""Basins: labels do not depend on threads and tiles, and agree with full runs."""
+"""Basins: labels do not depend on cores and tiles, and agree with full runs."""
 
 from dataclasses import replace
 from itertools import product
@@ -39,8 +39,8 @@ def table(searched):
     return searched[0]
 
 
-def whole(table, attractors_at_a, tiles, threads):
-    basin_settings = replace(PLANE, tiles=tiles, threads=threads)
+def whole(table, attractors_at_a, tiles, cores):
+    basin_settings = replace(PLANE, tiles=tiles, cores=cores)
     settings = basin_settings, SEARCH.label_limit
     parts = [basins.tile(attractors_at_a, number, *settings, "moving") for number in range(tiles)]
     near = basins.pairs(attractors_at_a, *settings, SEARCH.seed, "moving")
@@ -59,9 +59,9 @@ def basin_maps(table, attractors_at_a):
 
 
 @pytest.mark.slow
-def test_any_number_of_threads_and_tiles_gives_the_same_labels(table, attractors_at_a, basin_maps):
-    for tiles, threads in ((3, 1), (1, 3), (5, 2)):
-        assert basin_maps.identical(whole(table, attractors_at_a, tiles, threads)), (tiles, threads)
+def test_any_number_of_cores_and_tiles_gives_the_same_labels(table, attractors_at_a, basin_maps):
+    for tiles, cores in ((3, 1), (1, 3), (5, 2)):
+        assert basin_maps.identical(whole(table, attractors_at_a, tiles, cores)), (tiles, cores)
     assert basin_maps["undetermined_count"].item() == 0
     assert len(np.unique(basin_maps["branch"])) >= 2
 

@@ -63,7 +63,7 @@ def test_attractors(capsys, tmp_path):
 
 def test_basins(capsys, tmp_path, monkeypatch):
     files = [tmp_path / name for name in ("basins.nc", "attractors.nc")]
-    plane = ["--pixels", "6", "--first-position", "-1.2,1", "--threads", "2"]
+    plane = ["--pixels", "6", "--first-position", "-1.2,1", "--cores", "2"]
     out = ["--out", str(files[0]), "--attractors-out", str(files[1])]
     printed = said(capsys, "basins", *GIVEN, *OPTIONS, *plane, *out)
     expected = burridge_knopoff.basin_map(MODEL, pixels=6, first_position=(-1.2, 1.0), **SHORT)

@@ -51,7 +51,7 @@ series rk4 one_sided symmetric tested moving window all none linearized nonlinea
 v contact start solver step transient batches sampling trajectory trajectory_sampling events event_window
 lyapunov_exponents lyapunov_alignment a_digits synchronization_threshold motion agreement solvers figures attractors
 basins chains two_blocks samples pixels tiles pairs blocks laws seed position velocity time_limit resolution
-perturbations threads phases amplitude phase_difference inner_share 180 180.5 refine fraction_width lifetime 1.0e-4 law
+perturbations cores phases amplitude phase_difference inner_share 180 180.5 refine fraction_width lifetime 1.0e-4 law
 chain coupling pulling threshold ends neighbours open ring formula sigma eta exponential stribeck carlson_langer own 100
 100.5 1/(1+a*u) 1-a*u 1-b*u exp(-a*u) sqrt(1-a*u) 1-a*u**2 {formula: 1-a*u} {formula: 1-b*u, b: 0.5} {law: stribeck,
 sigma: 0.1} {sigma: 0.02} {linearized: {}} mass grid springs {springs: x} {grid: [3,1]} random=uniform
@@ -69,7 +69,7 @@ motion.longest_period >0.0 1e9, agreement.relative_tolerance 0.0 1.0, agreement.
 solvers.step 1e-9 10.0, attractors.samples 0 1000000, attractors.seed 0 4294967295, attractors.transient >0.0 1e9,
 attractors.window >0.0 1e9, attractors.time_limit >0.0 1e9, attractors.resolution 1e-6 0.1, attractors.perturbations 4
 10000, attractors.fraction_width 5e-4 0.5, attractors.lifetime >0.0 1e9, refine.resolution 1e-6 100.0,
-refine.longest_period >0.0 1e9, basins.pixels 1 16384, basins.pairs 0 10000000, basins.tiles 1 16384, basins.threads 1
+refine.longest_period >0.0 1e9, basins.pixels 1 16384, basins.pairs 0 10000000, basins.tiles 1 16384, basins.cores 1
 1024, chains.samples 1 100000, phases.samples 1 100000, phases.seed 0 4294967295, chains.symmetric_samples 1 100000,
 chains.seed 0 4294967295, chains.time_limit 200.0 1e9, chains.synchronization_distance 1e-14 1e-3,
 chains.two_blocks.samples 1 100000

@@ -12,7 +12,7 @@ from tests.refused import refused
 
 
 def test_defaults_are_those_of_the_config():
-    defaults = {"pixels": 64, "samples": 100, "seed": 1, "threads": 1}
+    defaults = {"pixels": 64, "samples": 100, "seed": 1, "cores": None}
     defaults |= {"v": None, "contact": None, "start": "moving"}
     parameters = inspect.signature(basin_map).parameters
     assert {name: parameters[name].default for name in defaults} == defaults
@@ -46,7 +46,7 @@ def test_labels_are_those_of_whole_runs():
         ({"v": 0.0}, "v: 0.0"),
         ({"start": "soon"}, "start: 'soon'"),
         ({"pixels": 0}, "pixels: 0"),
-        ({"threads": 0}, "threads: 0"),
+        ({"cores": 0}, "cores: 0"),
         ({"first_position": (1.0, 1.0)}, "first_position"),
         ({"window": 0.0}, "window: 0.0"),
         ({"windows": 10.0}, "windows"),

@@ -52,7 +52,7 @@ def attractors():
         ({"start": "stuck"}, "start: 'stuck'"),
         ({"time_limit": -1.0}, "time_limit: -1.0"),
         ({"time_limit": float("nan")}, "time_limit: nan"),
-        ({"threads": 0}, "threads: 0"),
+        ({"cores": 0}, "cores: 0"),
         ({"position": POSITION + 1j}, "position"),
         ({"position": [[1.0], [1.0, 2.0]]}, "position"),
         ({"position": np.ma.array(POSITION, mask=POSITION < 0.0)}, "velocity"),

@@ -91,7 +91,7 @@ BAD_CHANGES = [
     ({"attractors": {"velocity": ["v", "0.5*v"]}}, ["attractors.velocity: [0.1, 0.05]", "low < high"]),
     ({"attractors": {"velocity": [0, "2*w"]}}, ["attractors.velocity[1]: '2*w'", "a formula of v"]),
     ({"attractors": {"velocity": [0.1]}}, ["attractors.velocity: [0.1]", "[low, high]"]),
-    ({"basins": {"linearized": [0.08]}}, ["basins.linearized: unknown key", "a, first_position"]),
+    ({"basins": {"linearized": [0.08]}}, ["basins.linearized: unknown key", "a, cores, first_position"]),
     ({"basins": {"a": {"nonlinear": [0.1, 0.1]}}}, ["basins.a.nonlinear: [0.1, 0.1]"]),
     ({"basins": {"pixels": 4, "tiles": 5}}, ["basins.tiles: 5", "4 rows"]),
     ({"basins": {"initial": "middle"}}, ["basins.initial: 'middle'", "minus | plus"]),

@@ -24,8 +24,8 @@ MODELS = [Model(Chain(3), law_of(law, a), 0.2, "symmetric") for law, a in (("non
 def ruled(monkeypatch):
     """States are decided by a rule, at a time of 100 + U_1."""
 
-    def label_states(model, attractors, position, velocity, *, start, time_limit, threads):
-        assert (start, time_limit, threads) == ("moving", SEARCH.label_limit, 1)
+    def label_states(model, attractors, position, velocity, *, start, time_limit, cores):
+        assert (start, time_limit, cores) == ("moving", SEARCH.label_limit, 1)
         middle, speed = model.initial_coordinates(PAPER_STATES["minus"])
         assert (position[:, 1] == middle[1]).all()
         assert (velocity == speed).all()

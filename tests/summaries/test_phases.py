@@ -28,8 +28,8 @@ MODELS = [Model(Chain(3), law_of(law, 0.05)) for law in ("linearized", "nonlinea
 def ruled(monkeypatch):
     """Three attractors; a state reaches the first if x_1 + x_2 > 0.4 v, none if it is < −0.4 v, otherwise the last."""
 
-    def label_states(model, attractors, position, velocity, *, time_limit):
-        assert time_limit == SEARCH.label_limit
+    def label_states(model, attractors, position, velocity, *, time_limit, cores):
+        assert (time_limit, cores) == (SEARCH.label_limit, 1)
         x = (position - model.sliding_offset)[:, :2].sum(axis=1)
         return np.select([x > 0.04, x < -0.4], [0, -1], 2), np.zeros(len(x))
 

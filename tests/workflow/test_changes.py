@@ -84,7 +84,7 @@ KEYS = [
     ({"section": {"of": "block", "block": 2}}, (*POINTS, "attractors_of_law")),
     ({"contact": "symmetric"}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks", "proof")),
     ({"start": "tested"}, (*POINTS, "attractors_of_law", "two_blocks")),
-    ({"step": 0.002, "basins.threads": 2, "chains.time_limit": 900}, ()),
+    ({"step": 0.002, "basins.cores": 2, "chains.time_limit": 900}, ()),
     (
         {"synchronization_threshold": 1.0e-5},
         ("mean_distance", "lyapunov", "agreement", "attractors_of_law", "two_blocks"),

@@ -1,7 +1,7 @@
 # Basins of attraction: maps over a plane of initial states, computed in tiles and merged.
 # Keys of a map, besides its law and its a.
 PLANE = [
-    *parts(STUDY, "basins", "a", "threads", "pixels", "tiles", "pairs"),
+    *parts(STUDY, "basins", "a", "cores", "pixels", "tiles", "pairs"),
     *(f"initial.{STUDY.config['basins']['initial']}", "start", "attractors"),
 ]
 
@@ -19,7 +19,7 @@ rule basin_tile:
         f"{RESULTS}/benchmarks/basins/{{law}}/a{{a}}/tile{{tile}}.tsv"
     wildcard_constraints:
         tile=r"\d+",
-    threads: STUDY.config["basins"]["threads"]
+    threads: STUDY.config["basins"]["cores"]
     resources:
         runtime=240,
         cpus_per_task=all_threads,
@@ -43,7 +43,7 @@ rule basin_pairs:
         f"{RESULTS}/logs/basins/{{law}}/a{{a}}/pairs.log",
     benchmark:
         f"{RESULTS}/benchmarks/basins/{{law}}/a{{a}}/pairs.tsv"
-    threads: STUDY.config["basins"]["threads"]
+    threads: STUDY.config["basins"]["cores"]
     resources:
         runtime=240,
         cpus_per_task=all_threads,

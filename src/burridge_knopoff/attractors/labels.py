@@ -13,6 +13,7 @@ from burridge_knopoff.kernel._core import Clouds
 from burridge_knopoff.model.model import STARTS, ChainState, Model
 from burridge_knopoff.model.ranges import Number, OneOf, Whole
 from burridge_knopoff.motion.section_returns import state_of
+from burridge_knopoff.running.cores import available_cores
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.settings import LONGEST
 from burridge_knopoff.running.threads import map_in_threads
@@ -99,14 +100,14 @@ def label_states(
     *,
     start: str = "moving",
     time_limit: float = SEARCH.time_limit,
-    threads: int = 1,
+    cores: int | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the attractor that each initial state reaches, and the time τ at which this is certain, shape (n,) each.
 
     model, attractors : as `find_attractors` takes and returns them; the attractors are those of this model
     position, velocity : U(0) and U'(0), shape (n, blocks); start : moving or tested, see `Model.begin`
     time_limit : time by which a state has to reach one of them
-    threads : number of threads that share the trajectories; the labels do not depend on it
+    cores : number of cores that share the trajectories, by default all; the labels do not depend on it
 
     A label is the index of an attractor, or −1 if none is reached. Raises ValueError, one line, for attractors of
     another model, for shapes, times or a start that are not allowed, for numbers that are not finite, and for
@@ -137,14 +138,14 @@ def label_states(
         )
     OneOf(STARTS).form(start, "start")
     time_limit = Number(0.0, 10.0 * LONGEST, above=True).form(time_limit, "time_limit")
-    threads = Whole(1, 1024).form(threads, "threads")
+    cores = available_cores() if cores is None else Whole(1, 1024).form(cores, "cores")
     stuck = model.stuck_blocks(position, velocity, start)
     labels = np.full(len(position), UNDETERMINED, dtype=np.intc)
     times = np.zeros(len(position))
     if not attractors:
         return labels, times
     offset = position - model.sliding_offset
-    edges = np.linspace(0, len(position), threads + 1).astype(int)
+    edges = np.linspace(0, len(position), cores + 1).astype(int)
 
     def work(first: int, last: int) -> None:
         part = slice(first, last)
@@ -152,5 +153,5 @@ def label_states(
             model, attractors, offset[part], velocity[part], stuck[part], time_limit
         )
 
-    map_in_threads(threads, work, edges[:-1], edges[1:])
+    map_in_threads(cores, work, edges[:-1], edges[1:])
     return labels, times

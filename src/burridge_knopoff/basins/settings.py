@@ -53,9 +53,7 @@ class BasinSettings:
         Whole(1, 16_384),
         "number of tiles (bands) into which a map is divided, one job each; at most `pixels`",
     ] = 2
-    threads: Annotated[
-        int, Whole(1, 1024), "number of threads for each map or tile; the result does not depend on it"
-    ] = 1
+    cores: Annotated[int, Whole(1, 1024), "number of cores for each map or tile; the result does not depend on it"] = 1
 
     def __post_init__(self) -> None:
         check_fields(self)

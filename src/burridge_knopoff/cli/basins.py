@@ -22,8 +22,9 @@ from burridge_knopoff.cli.output import print_lines
 from burridge_knopoff.messages import format_value
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MotionSettings
+from burridge_knopoff.running.cores import available_cores
 
-PLANE = ("pixels", "first_position", "last_position", "first_velocity", "threads")
+PLANE = ("pixels", "first_position", "last_position", "first_velocity", "cores")
 
 DESCRIPTION = """Map the attractor reached from each state in a plane of initial states, over U_1(0) and U_N(0), or
 over U_1(0) and U_1'(0) of one block. The initial state gives all other positions and velocities. Attractors are
@@ -40,7 +41,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_state(parser, "minus")
     plane = parser.add_argument_group("map")
     # Fewer pixels and samples than in a study, like `basin_map`.
-    add_settings(plane, BasinSettings, *PLANE, pixels=64)
+    add_settings(plane, BasinSettings, *PLANE, pixels=64, cores=available_cores())
     add_search(parser, samples=100)
     out = parser.add_argument_group("files")
     out.add_argument("--out", metavar="FILE", help="write the map as netCDF, in the form of basins.nc")

@@ -16,6 +16,7 @@ from burridge_knopoff.model.initial import OWN, InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.sampling import POSITIONS, VELOCITIES
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
+from burridge_knopoff.running.cores import available_cores
 
 if TYPE_CHECKING:
     import xarray
@@ -39,7 +40,7 @@ def basin_map(
     start: str = "moving",
     samples: int = 100,
     seed: int = 1,
-    threads: int = 1,
+    cores: int | None = None,
     motion: MotionSettings = MOTION,
     **by_name: Any,
 ) -> tuple[xarray.Dataset, xarray.Dataset]:
@@ -53,7 +54,7 @@ def basin_map(
     first_velocity : range of U_1'(0), for one block; its ends may be formulas of v
     samples, seed : initial states of the search for attractors; an attractor that none of them reaches is not found,
         and its basin is undetermined (−1)
-    threads : number of threads; the map does not depend on it
+    cores : number of cores, by default all; the map does not depend on it
     by_name : other settings of `SearchSettings`, and parameters of the model as for `simulate`
     motion : how kinds of motion are classified
 
@@ -96,7 +97,7 @@ def basin_map(
         first_velocity=first_velocity,
         pairs=0,
         tiles=1,
-        threads=threads,
+        cores=available_cores() if cores is None else cores,
     )
     plane.rows(model)
     attractors, candidates = coexisting_attractors(model, settings, motion, starts=[state], start=start)

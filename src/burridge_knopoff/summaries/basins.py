@@ -110,7 +110,7 @@ def tile_of_map(
     """
     candidates = known_attractors(attractors, returns, model_of(config, law, config["a"]))
     limit = SearchSettings(**config["attractors"]).label_limit
-    return tile(candidates, number, replace(_plane(config), threads=cores), limit, config["start"])
+    return tile(candidates, number, replace(_plane(config), cores=cores), limit, config["start"])
 
 
 def pairs_of_map(
@@ -119,7 +119,7 @@ def pairs_of_map(
     """Return the pairs of nearby states of the map of a law at one a; arguments as in `tile_of_map`."""
     candidates = known_attractors(attractors, returns, model_of(config, law, config["a"]))
     search = SearchSettings(**config["attractors"])
-    return pairs(candidates, replace(_plane(config), threads=cores), search.label_limit, search.seed, config["start"])
+    return pairs(candidates, replace(_plane(config), cores=cores), search.label_limit, search.seed, config["start"])
 
 
 def _plane(config: Mapping[str, Any]) -> BasinSettings:
@@ -219,7 +219,7 @@ def _labels(
         velocity,
         start=start,
         time_limit=label_limit,
-        threads=basins.threads,
+        cores=basins.cores,
     )
 
 

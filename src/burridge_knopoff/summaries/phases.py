@@ -147,7 +147,7 @@ def _values_at(candidates: KnownAttractors, phases: PhaseSettings, label_limit: 
     for share in phases.inner_share:
         position, velocity, standing = oscillating_states(model, *phases_of_states, share, of_inner.reshape(-1, inner))
         # Every block is in the middle of an oscillation, so that no convention for the start applies at τ = 0.
-        labels, _ = label_states(model, candidates.attractors, position, velocity, time_limit=label_limit)
+        labels, _ = label_states(model, candidates.attractors, position, velocity, time_limit=label_limit, cores=1)
         cell = {"standing_count": standing.reshape(shape).sum(axis=2)}
         cells.append({**cell, **_outcomes(candidates, correlations, labels.reshape(shape))})
     values = {name: np.array([cell[name] for cell in cells]) for name in cells[0]}
