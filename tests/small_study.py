@@ -74,6 +74,17 @@ STUDIES: dict[str, dict[str, Any]] = {
         "initial": _STATES,
     },
     "two_blocks": {"initial": {"pair": {"position": [-0.9, -1.1], "velocity": [0.1, 0.1]}}},
+    "one_block": {
+        "a": [0.0],
+        "laws": {"belt": {"formula": "mud + (1 - mud)*exp(-u/v0)", "mud": 0.5, "v0": 0.5}},
+        "v": 1.5,
+        "contact": "symmetric",
+        "chain": {"blocks": 1, "pulling_damping": 0.1},
+        "initial": {"slow": {"position": [0.5], "velocity": [0.0]}, "fast": {"position": [0.9], "velocity": [0.5]}},
+        "solvers": {"a": [0.0], "step": 0.05},
+        "attractors": {**SMALL["attractors"], "position": [-2, 2], "velocity": ["v - 2", "v"]},
+        "basins": {**SMALL["basins"], "a": {"belt": [0.0]}, "first_velocity": ["v - 2", "v"]},
+    },
 }
 
 #: Their names, and that of the finished study.

@@ -42,7 +42,7 @@ from tests.refused import refused
 def test_a_claim_says_what_the_paper_says_and_where(claim: Claim) -> None:
     assert claim.statement.endswith(".")
     assert claim.place
-    assert title_and_caption(claim.figure)
+    assert title_and_caption(claim.figure, True)
     assert claim.depends_on == tuple(name for name in CLAIMS if name in claim.depends_on) or claim.topic == "history"
     assert claim.name not in claim.depends_on
     assert {*claim.depends_on} <= {*CLAIMS}

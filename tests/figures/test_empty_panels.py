@@ -154,7 +154,7 @@ def test_cycles_of_runs_without_stops_say_so(stuck, said):
         stick_fraction=(names, np.full((2, 1, 2, 2), stuck)),
         velocity_correlation=(tuple(GRID), np.full((2, 1, 2), np.nan)),
     )
-    assert words(stick_slip.draw(run, "nonlinear")) == said
+    assert words(stick_slip.draw(run, "nonlinear", True)) == said
 
 
 def chain_events(a: float, end: float) -> xr.Dataset:

@@ -36,6 +36,13 @@ def test_a_run_that_did_not_complete_sets_no_scale():
     assert laws.get_xlim()[1] < 2.0
 
 
+def test_a_law_without_a_is_not_labelled_by_it():
+    for formula, labels in (("1 - c*tanh(u)", 0), ("1 - c*tanh(a*u)", 2)):
+        laws = {"own": {"formula": formula, "c": 0.1}}
+        (upper, _) = draw(runs(laws, np.array([[[1.0, 0.95]]])), laws, 0.0).axes
+        assert sum("a=" in text.get_text() for text in upper.texts) == labels
+
+
 def test_the_legend_of_the_laws_has_their_formulas_and_numbers():
     laws = {
         "linearized": {},
@@ -50,4 +57,5 @@ def test_the_legend_of_the_laws_has_their_formulas_and_numbers():
     ]
     assert entries[2].startswith("own: Φ = 1 - $c$*tanh($a$*$u$/$c$)")
     assert entries[2].count("\n") == 2
+    assert entries[-1] == "stuck block"
     assert law_of("own", 0.1, {"formula": "1 - c*u", "c": 0.1}).words.count("c = 0.1") == 1

@@ -25,7 +25,7 @@ def cycles(blocks):
 @pytest.mark.parametrize(("blocks", "shown"), [(3, [1, 2, 3]), (6, [1, 3, 6])])
 def test_stick_slip_shows_the_first_the_middle_and_the_last_block(tmp_path, blocks, shown):
     dataset = cycles(blocks)
-    figure = draw(dataset, "nonlinear")
+    figure = draw(dataset, "nonlinear", has_paper_chain=False)
     panels = figure.axes
     assert len(panels) == 2
     drawn = [line.get_ydata(orig=False) for line in panels[0].get_lines() if len(line.get_ydata()) == 3]
@@ -40,12 +40,20 @@ def test_stick_slip_shows_the_first_the_middle_and_the_last_block(tmp_path, bloc
     write_figure(figure, tmp_path / "figure.png")
 
 
+def test_the_statements_of_the_paper_stand_at_its_chain_only():
+    for has_paper_chain in (True, False):
+        figure = draw(cycles(3), "nonlinear", has_paper_chain)
+        bands = [len(panel.patches) for panel in figure.axes]
+        words = [text.get_text() for text in figure.legends[0].get_texts() if "paper" in text.get_text()]
+        assert bands == [int(has_paper_chain), 0]
+        assert words == ["stated in the paper: 2 to 3", "stated in the paper: 1/2"] * has_paper_chain
+
+
 def test_two_blocks_have_no_ratio_to_a_middle_one():
-    figure = draw(cycles(2), "nonlinear")
+    figure = draw(cycles(2), "nonlinear", has_paper_chain=False)
     assert [panel.get_ylabel() for panel in figure.axes] == ["time between stops", "correlation"]
     assert {text.get_text() for text in figure.legends[0].get_texts()} == {
         "block 1",
         "block 2",
         "correlation of $U_1$′ with $U_{2}$′",
-        "stated in the paper: 2 to 3",
     }

@@ -21,7 +21,7 @@ def test_pictures_keep_their_size_and_their_colours(tmp_path):
         pixels[400 + 20 * n, 100:1400] = np.round(255 * np.array(to_rgb(color)))
     path = tmp_path / "bifurcation_diagram.png"
     Image.fromarray(pixels).convert("RGBA").save(path)
-    picture = read_picture(path)
+    picture = read_picture(path, True)
     content = base64.b64decode(picture.data.split(",")[1])
     image = np.asarray(Image.open(io.BytesIO(content)).convert("RGB"))
     assert np.abs(image.astype(int) - pixels).max() <= 16
@@ -37,4 +37,4 @@ def test_a_picture_that_cannot_be_read_is_named(tmp_path, content):
     """For the second, another program would be started."""
     (tmp_path / "noise.png").write_bytes(content)
     with refused("noise.png"):
-        read_picture(tmp_path / "noise.png")
+        read_picture(tmp_path / "noise.png", True)

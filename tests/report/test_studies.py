@@ -1,4 +1,4 @@
-"""The report of studies of one law, of four laws, of a ring and of blocks that are not alike."""
+"""The report of studies of one law, of four laws, of a ring, of blocks that are not alike, and of one block."""
 
 import base64
 import json
@@ -9,6 +9,7 @@ import plotly.graph_objects as go
 import pytest
 
 from burridge_knopoff.dataset.summary import write_summary
+from burridge_knopoff.report import overview
 from burridge_knopoff.report.page import Sources, render
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.study import Study
@@ -49,7 +50,8 @@ def test_every_law_has_its_charts_and_its_formula(small, html):
     laws, states = small.study.laws, small.study.initial
     charts = [attributes for _, attributes in page.elements if "data-chart" in attributes]
     for name, count in {
-        "distance": len(laws),
+        # J of one block is 0.
+        "distance": len(laws) if small.study.has_end_blocks else 0,
         "exponents": len(laws) * len(states),
     }.items():
         assert sum(chart["data-chart"] == name for chart in charts) == count, name
@@ -75,15 +77,19 @@ def test_a_study_of_curves_alone(small_studies, tmp_path):
     assert "This study does not search for attractors" in text
     assert "No statement of the paper was judged." in text
     other = rendered(replace_chain(study), small.summaries, None, STORED[:5], tmp_path)
-    assert "No statement of the paper was judged: they are about its own chain of 3 blocks." in Page(other).whole_text
+    assert "of the paper was judged" not in Page(other).whole_text
+    assert 'href="#verdicts"' not in other
     assert not re.search(r'href="summary/(attractors|basins|claims)', html)
 
 
 def test_what_does_not_hold_in_the_chain_is_said(small, html):
     chain = small.models[0].chain
-    assert ("The chain is not its own mirror image." in html) == (not chain.is_mirror_symmetric)
+    assert ("The chain is not its own mirror image." in html) == (not chain.is_mirror_symmetric and chain.blocks > 1)
+    assert ("is 0 in a chain of one block" in html) == (chain.blocks == 1)
     assert ("a ring; coupling 1;" in html) == (chain.ends == "ring")
-    assert ("coupling 1, 1.3; pulling 1.5; static friction 1, 1.1, 1.2" in html) == (not chain.is_mirror_symmetric)
+    words = "coupling 1, 1.3; pulling 1.5; static friction 1, 1.1, 1.2"
+    assert (words in html) == (not chain.is_mirror_symmetric and chain.blocks > 1)
+    assert ("coupling" in overview.chain_text(chain)) == (chain.blocks > 1)
     if not chain.is_mirror_symmetric:
         assert (small.summaries["mean_distance"]["synchronized"] == 0).all()
         assert (small.summaries["agreement"]["kind"] != 0).all()

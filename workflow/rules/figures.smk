@@ -26,7 +26,7 @@ for figure in figure_descriptions():
             config=uses(f"figure_{figure.name}", *keys_of(figure)),
             sources=sources("figure", f"burridge_knopoff.figures.{figure.name}"),
             figure=figure.name,
-            caption=figure.caption_of({"initial": "{initial}"}),
+            caption=figure.caption_of({"initial": "{initial}"}, STUDY.has_paper_chain),
         message:
             f"figure: {words}"
         script:

@@ -48,9 +48,9 @@ class Description:
         """Whether it shows single runs rather than summaries."""
         return self.inputs == ("points",)
 
-    def caption_of(self, wildcards: Mapping[str, str]) -> str:
-        """Return the caption of a picture as one paragraph, with a reference to the paper's figure."""
-        paper = f" Compare the paper's {self.paper}." if self.paper else ""
+    def caption_of(self, wildcards: Mapping[str, str], has_paper_chain: bool) -> str:
+        """Return the caption of a picture as one paragraph, for the paper's chain with a reference to its figure."""
+        paper = f" Compare the paper's {self.paper}." if self.paper and has_paper_chain else ""
         return _fill(f"{' '.join(self.caption.split())}{paper}", wildcards)
 
     def title_of(self, wildcards: Mapping[str, str]) -> str:
@@ -70,7 +70,7 @@ def figure_descriptions() -> tuple[Description, ...]:
     return tuple(sorted(figures, key=lambda figure: (not figure.paper, figure.paper.lstrip("Figs. "), figure.name)))
 
 
-def title_and_caption(file: str) -> tuple[str, str]:
+def title_and_caption(file: str, has_paper_chain: bool) -> tuple[str, str]:
     """Return title and caption of a picture from its file name.
 
     Raises ValueError if no figure has that name.
@@ -79,7 +79,7 @@ def title_and_caption(file: str) -> tuple[str, str]:
         head, wildcard, _ = figure.file.partition("{initial}")
         if file == figure.file or (wildcard and file.startswith(head)):
             wildcards = {"initial": file.removeprefix(head)}
-            return figure.title_of(wildcards), figure.caption_of(wildcards)
+            return figure.title_of(wildcards), figure.caption_of(wildcards, has_paper_chain)
     raise ValueError(f"{file}: no figure of that name")
 
 

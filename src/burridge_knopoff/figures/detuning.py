@@ -17,11 +17,12 @@ from burridge_knopoff.summaries.one_frequency import has_one_frequency
 TITLE = "End blocks of unequal mass"
 CATEGORY = "Attractors"
 INPUTS = ("rotation",)
+CONDITION = "has_end_blocks"
 CAPTION = """\
-Are the end blocks locked to each other without synchrony? With a mass of block 3 larger by the detuning d, the
-amplitude of block 3 over that of block 1 in their common oscillation, on branches 1 and 2, where both have one
-frequency. Lines: the same ratio in the normal mode of the sliding chain that has most of the energy. In a normal mode
-the ratio follows the masses; for oscillators of equal amplitude that are locked to each other it is 1.
+Are the end blocks locked to each other without synchrony? With a mass of the last block larger by the detuning d, its
+amplitude over that of block 1 in their common oscillation, on branches 1 and 2, where both have one frequency. Lines:
+the same ratio in the normal mode of the sliding chain that has most of the energy. In a normal mode the ratio follows
+the masses; for oscillators of equal amplitude that are locked to each other it is 1.
 """
 
 
@@ -29,7 +30,8 @@ the ratio follows the masses; for oscillators of equal amplitude that are locked
 def draw(rotation: xarray.Dataset) -> Figure:
     """Draw the amplitude ratio after detuning versus a for each law, in the colours of the branches."""
     laws = [str(law) for law in rotation["law"].values]
-    figure, (panels,) = panel_table(2.4, len(laws), "$a$", ["amplitude of block 3 over that of block 1"])
+    ratio = f"amplitude of block {rotation.sizes['block']} over that of block 1"
+    figure, (panels,) = panel_table(2.4, len(laws), "$a$", [ratio])
     grid = np.unique(rotation["a"].values[rotation["in_grid"].values == 1])
     for panel, law in zip(panels, laws, strict=True):
         _ratios(panel, rotation.sel(law=law))

@@ -7,24 +7,26 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.palette import dashes, law_color, law_symbol
+from burridge_knopoff.figures.single_panel import widen_constant_axes
 from burridge_knopoff.figures.style import COLUMN, lone_marker, new_figure, styled
 
 TITLE = "Stability of uniform sliding"
 CATEGORY = "Model"
 INPUTS = ("equilibrium",)
+FROM_STUDY = ("has_paper_chain",)
 CAPTION = """\
 The growth rate of perturbations of uniform sliding versus a, for each law. Lines: the largest real part of the
-eigenvalues λ of the stability matrix. Symbols: growth rates of the simulated tangent flow. Broad line: a/2, the value
-of the paper's chain with the linearized law.
+eigenvalues λ of the stability matrix. Symbols: growth rates of the simulated tangent flow. Broad line, for the paper's
+chain: a/2, its value under the linearized law.
 """
 
 
 @styled
-def draw(equilibrium: xarray.Dataset) -> Figure:
+def draw(equilibrium: xarray.Dataset, has_paper_chain: bool) -> Figure:
     """Draw the largest real part of the eigenvalues versus a, and growth rates of the simulated tangent flow."""
     figure, (panel,) = new_figure(COLUMN, 2.5)
     a = equilibrium["a"].values
-    if a.any():
+    if has_paper_chain and a.any():
         panel.plot(a, 0.5 * a, color="0.85", linewidth=5.0, solid_capstyle="butt", label="$a/2$")
     for n, law in enumerate(equilibrium["law"].values):
         part = equilibrium.sel(law=law)
@@ -32,6 +34,7 @@ def draw(equilibrium: xarray.Dataset) -> Figure:
         panel.plot(a, part["eigenvalue"].sel(part="real").max("mode").values, **look, linewidth=0.8, markersize=6.0)
         some = slice(None, None, max(1, len(a) // 12))
         panel.plot(a[some], part["growth_rate"].values[some], **law_symbol(n), linestyle="")
+    widen_constant_axes(panel)
     panel.set(xlabel="$a$", ylabel=r"largest $\mathrm{Re}\,\lambda$")
     laws = [
         Line2D([], [], **law_symbol(n), linestyle=dashes(n), linewidth=0.8, label=f"{law} law")

@@ -67,7 +67,7 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
                 mean_distance["a"], least, **{**state_symbol(k, SIZE), **look}, markevery=max(1, least.size // 8)
             )
     upper.set(xlabel="velocity $U$′", ylabel=r"friction $\Phi$", xlim=(-0.05 * fastest, 1.25 * fastest))
-    for a in a_values:
+    for a in a_values if any(law.has_a for law in laws) else ():
         # A bracket joins the ends of the curves of one a.
         ends = [law.at(a)(speed[-1:])[0] for law in laws]
         upper.plot(2 * [1.03 * fastest], [min(ends), max(ends)], color="0.5", linewidth=0.7)
@@ -75,8 +75,7 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
         upper.annotate(f"$a={a:g}$", at, (3, 0), textcoords="offset points", va="center", fontsize=8.0)
     lower.set(xlabel="$a$", ylabel=r"least $\Phi$")
     upper.set_ylim(*upper.get_ylim())
-    upper.plot([0.0, 0.0], [-1.0, 1.0], color="0.4", linewidth=2.0, solid_capstyle="butt", label="stuck block")
-    upper.legend(loc="lower left", bbox_to_anchor=(0.06, 0.0))
+    stuck = upper.plot([0.0, 0.0], [-1.0, 1.0], color="0.4", linewidth=2.0, solid_capstyle="butt", label="stuck block")
     states = [
         Line2D([], [], **state_symbol(k, SIZE), label=f"run from {initial}")
         for k, initial in enumerate(mean_distance["initial"].values)
@@ -85,6 +84,7 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
     legend_below(
         figure,
         [Line2D([], [], color=law_color(n), linestyle=dashes(n), label=_entry(law)) for n, law in enumerate(laws)],
+        stuck,
     )
     label_panels((upper, lower), ["friction versus velocity", "least friction in each run"])
     return figure

@@ -18,6 +18,7 @@ from burridge_knopoff.summaries.plateaux import locked_share, plateaux
 TITLE = "Rotation number"
 CATEGORY = "Attractors"
 INPUTS = ("rotation",)
+CONDITION = "has_end_blocks"
 CAPTION = """\
 The rotation number ρ of branch 1, the unsynchronized motion, versus a: the number of oscillations of the end blocks
 against each other per oscillation of the middle block. By symmetry both end blocks have the same frequency, locked to

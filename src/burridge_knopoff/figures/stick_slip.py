@@ -17,14 +17,14 @@ from burridge_knopoff.figures.style import begin_at_zero, label_panels, legend_b
 TITLE = "Stick-slip cycles"
 CATEGORY = "Runs"
 INPUTS = ("stick_slip",)
-FROM_STUDY = ("shown_law",)
+FROM_STUDY = ("shown_law", "has_paper_chain")
 CAPTION = """\
 Stick-slip cycles of the first, middle and last block versus a, for each initial state, under one law of the study (the
 config's `figures.law`). Top: the time between two stops, with its standard error. Bottom: in chains of more than two
 blocks, the frequency of the end blocks divided by that of the middle block, from the peaks of the velocity spectra
-(bars: resolution of the spectra); and the correlation of the velocities of the end blocks. Band and dotted
-line: the paper's statements for its three blocks, a cycle of two to three units of time and half the frequency of the
-middle block.
+(bars: resolution of the spectra); and the correlation of the velocities of the end blocks. For the paper's chain, a
+band and a dotted line show its statements: a cycle of two to three units of time, and half the frequency of the middle
+block.
 """
 
 #: The paper's statements: a stick-slip cycle lasts about two or three time units; the end blocks oscillate at about
@@ -41,12 +41,12 @@ CORRELATION |= {"markeredgewidth": 0.6, "zorder": 4}
 
 
 @styled
-def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
+def draw(stick_slip: xarray.Dataset, shown_law: str, has_paper_chain: bool) -> Figure:
     """Draw cycle times, and the frequency ratios and the correlation of the end blocks, under one law.
 
     A column for each initial state, with the first, middle and last block. Frequency ratios are those of the end blocks
     to the middle block, which needs three blocks; the correlation needs two. Gaps are blocks that do not stop and runs
-    that did not complete.
+    that did not complete. The paper's statements are shown for its chain.
     """
     states, count = stick_slip["initial"].values, stick_slip.sizes["block"]
     middle = (count + 1) // 2
@@ -60,7 +60,8 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
         for n, block in enumerate(numbers):
             _points(cycles, n, run["cycle_time"].sel(block=block), run["cycle_time_error"].sel(block=block))
         _say_why(cycles, run, "cycle_time", "no stops")
-        cycles.axhspan(*PAPER_CYCLE, color="0.88", linewidth=0, zorder=0)
+        if has_paper_chain:
+            cycles.axhspan(*PAPER_CYCLE, color="0.88", linewidth=0, zorder=0)
         for panel in ends:
             for n, block in enumerate(numbers if count > 2 else ()):
                 if block != middle:
@@ -68,10 +69,10 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
             panel.plot(run["a"], run["velocity_correlation"], **CORRELATION)
             _say_why(panel, run, "velocity_correlation", "the velocities do not change")
             panel.axhline(0.0, color="0.7", linewidth=0.6, zorder=0)
-            if count > 2:
+            if has_paper_chain:
                 panel.axhline(PAPER_RATIO, color="0.4", linestyle=":", linewidth=0.9, zorder=0)
     begin_at_zero(table[0, 0])
-    legend_below(figure, _legend(numbers))
+    legend_below(figure, _legend(numbers, has_paper_chain))
     label_panels(table.flat, [f"{initial}: {name}" for name in rows for initial in states])
     figure.suptitle(f"{shown_law} law", fontsize="medium")
     return figure
@@ -106,9 +107,10 @@ def _ratios(panel: Axes, n: int, end: xarray.Dataset, middle: xarray.Dataset) ->
     _points(panel, n, ratio, ratio * np.hypot(shares[0], shares[1]))
 
 
-def _legend(numbers: list[int]) -> list[Line2D | Patch]:
+def _legend(numbers: list[int], has_paper_chain: bool) -> list[Line2D | Patch]:
     blocks = [Line2D([], [], **_look(n, block), label=f"block {block}") for n, block in enumerate(numbers)]
     correlation = Line2D([], [], **CORRELATION, label=f"correlation of $U_1$′ with $U_{{{numbers[-1]}}}$′")
     band = Patch(facecolor="0.88", label="stated in the paper: 2 to 3")
     half = Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="stated in the paper: 1/2")
-    return [*blocks, *([correlation] if len(numbers) > 1 else []), band, *([half] if len(numbers) > 2 else [])]
+    of_paper: list[Line2D | Patch] = [band, half] if has_paper_chain else []
+    return [*blocks, *([correlation] if len(numbers) > 1 else []), *of_paper]

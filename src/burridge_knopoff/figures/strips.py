@@ -57,6 +57,9 @@ def strip_range(values: np.ndarray) -> tuple[float, float]:
 def show_all(panel: Axes, values: np.ndarray) -> None:
     """Extend the horizontal axis of a panel over the strips of all values, and a little more."""
     panel.set_xlim(*strip_range(values))
+    if len(values) == 1:
+        # Other numbers would tell of a range.
+        panel.set_xticks(values)
 
 
 def strip_columns(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -88,10 +88,7 @@ def _scale_to(panel: Axes, values: np.ndarray) -> None:
     ends = panel.dataLim.intervalx
     places = np.unique([*values, *ends[np.isfinite(ends)]])
     show_all(panel, places)
-    if len(places) == 1:
-        # Other numbers would tell of a range.
-        panel.set_xticks(places)
-    elif len(panel.get_xticks()) == 1:
+    if len(places) > 1 and len(panel.get_xticks()) == 1:
         panel.xaxis.set_major_locator(AutoLocator())
 
 

@@ -89,7 +89,9 @@ def sketch_caption(study: Study) -> str:
         sentences.append("Only the first two blocks and the last are drawn.")
     if np.any(chain.damping) or np.any(chain.pulling_damping):
         sentences.append("Dashpots are not drawn.")
-    return " ".join([*sentences, "Compare the paper's Fig. 1."])
+    if study.has_paper_chain:
+        sentences.append("Compare the paper's Fig. 1.")
+    return " ".join(sentences)
 
 
 def opening(study: Study) -> str:
@@ -153,10 +155,11 @@ def _parameter_rows(study: Study) -> list[tuple[str, str]]:
 
 def chain_text(chain: Chain) -> str:
     """Describe the springs and the static friction of a chain."""
+    parts = []
     if chain.springs:
-        parts = [f"springs of {chain.springs}"]
-    else:
-        parts = [f"coupling {_format_of_springs(chain, chain.coupling)}"]
+        parts.append(f"springs of {chain.springs}")
+    elif chain.blocks > 1:
+        parts.append(f"coupling {_format_of_springs(chain, chain.coupling)}")
     parts.append(
         "pulling springs, one per neighbour of the block"
         if chain.pulling == NEIGHBOURS
@@ -171,7 +174,7 @@ def chain_text(chain: Chain) -> str:
         parts.append(f"dashpots to neighbours {_format_of_springs(chain, chain.damping)}")
     if np.any(chain.pulling_damping):
         parts.append(f"dashpots to the driver {_format_numbers(chain.pulling_damping)}")
-    shape = "a ring" if chain.ends == "ring" else "open ends"
+    shape = "a ring" if chain.ends == "ring" else "open ends" if chain.blocks > 1 else "one block"
     if chain.is_network:
         shape = f"a grid of {chain.grid[0]} × {chain.grid[1]} blocks" if chain.grid else "a network"
     return f"{shape}; {'; '.join(parts)}"

@@ -75,7 +75,7 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
     verdicts = read_verdicts(sources.claims)
     summaries = {name: open_summary(path) for name, path in sources.summaries.items()}
     # One after another: compressing each takes about 100 MB.
-    pictures = {name: read_picture(path) for name, path in sources.figures.items()}
+    pictures = {name: read_picture(path, study.has_paper_chain) for name, path in sources.figures.items()}
     if "sketch" in pictures:
         pictures["sketch"] = replace(pictures["sketch"], caption=overview.sketch_caption(study))
     environment = jinja2.Environment(
@@ -132,6 +132,7 @@ def _content_over_a(
     commands = Commands(study, arguments)
     return {
         "convention": overview.convention(verdicts.setting),
+        "has_a": study.has_a,
         "paper_chain": study.has_paper_chain,
         "signs": SIGNS,
         "meanings": MEANINGS,

@@ -25,7 +25,7 @@ class Picture:
     height: int
 
 
-def read_picture(path: str | Path) -> Picture:
+def read_picture(path: str | Path, has_paper_chain: bool) -> Picture:
     """Read a figure and convert it at full size to 256 colours, which takes a quarter of the size of its file.
 
     The effort balances size and time: more would save a few per cent in several times the time.
@@ -39,7 +39,7 @@ def read_picture(path: str | Path) -> Picture:
             colors = opened.convert("RGB").quantize(256, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
     except (OSError, SyntaxError) as error:
         raise BadFile(path, f"is not a readable picture ({error})") from None
-    title, caption = title_and_caption(name)
+    title, caption = title_and_caption(name, has_paper_chain)
     content = io.BytesIO()
     colors.convert("RGB").save(content, "WEBP", lossless=True, quality=40, method=3)
     data = "data:image/webp;base64," + base64.b64encode(content.getvalue()).decode()

@@ -28,7 +28,7 @@ CATALOGUE_FILE = "slip_events"
 FORMATS = (".png", ".pdf", ".svg")
 
 #: Arguments that figures take from the study, for a file that belongs to none.
-WITHOUT_STUDY: dict[str, Any] = {"marked_states": {}}
+WITHOUT_STUDY: dict[str, Any] = {"marked_states": {}, "has_paper_chain": False}
 
 
 def check_format(path: str | Path) -> None:
@@ -69,7 +69,9 @@ def write_picture(result: Result, path: str | Path) -> str:
         reason = "made by other sources" if old else "not the results of one study"
         raise ValueError(f"{paths}: the figure {figure.name} cannot show them: {reason}") from None
     write_figure(drawn, path)
-    return f"{path}: {figure.title_of({})}. {figure.caption_of({})}"
+    study = _study_of(result)
+    caption = figure.caption_of({}, study is not None and study.has_paper_chain)
+    return f"{path}: {figure.title_of({})}. {caption}"
 
 
 def _figure_of(result: Result) -> Description:
@@ -118,11 +120,14 @@ def _made_from(attributes: Mapping[str, Any]) -> dict[str, Any]:
     return {**origin.params, **origin.inputs, origin.file: attributes["checksum"]} if origin else {}
 
 
+def _study_of(result: Result) -> Study | None:
+    """Return the study to which a file belongs."""
+    return Study(result.record["config"], result.record["grid"]) if result.study else None
+
+
 def _study_arguments(result: Result, figure: Description) -> dict[str, Any]:
-    if not result.study:
-        return {name: WITHOUT_STUDY[name] for name in figure.from_study}
-    study = Study(result.record["config"], result.record["grid"])
-    return {name: getattr(study, name) for name in figure.from_study}
+    study = _study_of(result)
+    return {name: getattr(study, name) if study else WITHOUT_STUDY[name] for name in figure.from_study}
 
 
 @styled

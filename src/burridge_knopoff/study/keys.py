@@ -12,6 +12,7 @@ _CONDITIONS = {
     "has_several_laws": "a second law in `laws`",
     "has_synchronized_orbit": "a mirror-symmetric chain of 3 blocks",
     "has_one_chain": "the same chain at all points",
+    "has_end_blocks": "two or more blocks",
     "has_paper_chain": "the paper's chain of 3 blocks",
 }
 
@@ -46,6 +47,7 @@ def study_keys(study: Study, name: str) -> list[str]:
     return {
         "marked_states": [*MODEL_KEYS, "initial", "basins.initial", "basins.a"],
         "chain": ["chain", "grid", "a_digits"] if study.is_plane else ["chain"],
+        "has_paper_chain": ["chain"],
         "law_descriptions": ["laws"],
         "shown_a": ["figures.a"],
         "shown_law": ["figures.law"],

@@ -138,6 +138,11 @@ class Study:
         return self.chain.is_mirror_symmetric
 
     @property
+    def has_end_blocks(self) -> bool:
+        """Whether there are two end blocks, whose distance is J."""
+        return self.blocks > 1
+
+    @property
     def has_paper_chain(self) -> bool:
         """Whether the chain is that of the paper, the only one that its claims are about."""
         return self.chain.is_equivalent_to(Chain(3))

@@ -84,7 +84,9 @@ def axis(title: str, **options: Any) -> dict[str, Any]:
 
 def a_axis(a: np.ndarray, **options: Any) -> dict[str, Any]:
     """Return the axis of a, with room for what is drawn at the first and at the last value."""
-    return axis("<i>a</i>", range=list(strip_range(a)), **{"nticks": 8, **options})
+    # Of a single value other numbers would tell of a range.
+    ticks = {"tickvals": a} if len(a) == 1 else {"nticks": 8}
+    return axis("<i>a</i>", range=list(strip_range(a)), **{**ticks, **options})
 
 
 def strip_map(a: np.ndarray, values: np.ndarray, words: np.ndarray, **options: Any) -> go.Heatmap:

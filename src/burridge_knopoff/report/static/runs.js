@@ -22,7 +22,8 @@ function rowsOf({ law, initial, a }) {
   const at = (name) => runs[name][law][initial][a];
   const exponents = at("exponent_texts").map((text, n) => `λ${subscript(n + 1)} = ${text}`);
   return [
-    ["Run", element("span", {}, `${runs.laws[law]} law, initial state ${runs.initial[initial]}, `, element("i", {}, "a"), `\u00a0=\u00a0${runs.texts[a]}`)],
+    ["Run", element("span", {}, `${runs.laws[law]} law, initial state ${runs.initial[initial]}`,
+      ...(runs.has_a ? [", ", element("i", {}, "a"), `\u00a0=\u00a0${runs.texts[a]}`] : []))],
     [element("span", {}, "⟨", element("i", {}, "J"), "⟩"), at("mean_distance_text")],
     ["Status", runs.statuses[at("status")].replaceAll("_", " ")],
     ["Kind of motion", at("kind_text")],
