@@ -53,6 +53,14 @@ def stages_running(study: Study) -> set[str]:
     return {stage(path) for path in running(study)}
 
 
+def remove_stages(study: Study, stages: Collection[str]) -> None:
+    """Remove the files of some stages."""
+    for results in (study.folder / "results").iterdir():
+        for path in results.rglob("*"):
+            if path.is_file() and stage(str(path.relative_to(results))) in stages:
+                path.unlink()
+
+
 def temporaries(study: Study) -> list[str]:
     """Return the files in results/ that have not been moved into place."""
     results = study.folder / "results"
