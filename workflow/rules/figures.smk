@@ -15,7 +15,7 @@ for figure in figure_descriptions():
                 f"{RESULTS}/figures/{figure.file}.png",
                 caption="../report/figure.rst",
                 category=figure.category,
-                labels={"result": figure.title, "paper": figure.paper or "none"},
+                labels={"result": figure.title, "paper": (STUDY.has_paper_chain and figure.paper) or "none"},
             ),
         log:
             f"{RESULTS}/logs/figure_{figure.file}.log",

@@ -139,6 +139,7 @@ def label_states(
     OneOf(STARTS).form(start, "start")
     time_limit = Number(0.0, 10.0 * LONGEST, above=True).form(time_limit, "time_limit")
     cores = available_cores() if cores is None else Whole(1, 1024).form(cores, "cores")
+    cores = max(1, min(cores, len(position)))
     stuck = model.stuck_blocks(position, velocity, start)
     labels = np.full(len(position), UNDETERMINED, dtype=np.intc)
     times = np.zeros(len(position))

@@ -16,6 +16,7 @@ TITLE = "J versus time"
 CATEGORY = "Runs"
 PAPER = "Figs. 5a, 5b"
 INPUTS = ("points",)
+CONDITION = "has_end_blocks"
 CAPTION = """\
 The phase-space distance J between the end blocks versus time τ in single runs from each initial state, on a linear and
 on a logarithmic scale; the latter leaves out values below 10⁻¹⁵, which are rounding. If the initial relaxation, in the

@@ -8,6 +8,7 @@ from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.palette import dashes, law_color, law_symbol
 from burridge_knopoff.figures.single_panel import widen_constant_axes
+from burridge_knopoff.figures.strips import show_all
 from burridge_knopoff.figures.style import COLUMN, lone_marker, new_figure, styled
 
 TITLE = "Stability of uniform sliding"
@@ -34,6 +35,8 @@ def draw(equilibrium: xarray.Dataset, has_paper_chain: bool) -> Figure:
         panel.plot(a, part["eigenvalue"].sel(part="real").max("mode").values, **look, linewidth=0.8, markersize=6.0)
         some = slice(None, None, max(1, len(a) // 12))
         panel.plot(a[some], part["growth_rate"].values[some], **law_symbol(n), linestyle="")
+    if len(a) == 1:
+        show_all(panel, a)
     widen_constant_axes(panel)
     panel.set(xlabel="$a$", ylabel=r"largest $\mathrm{Re}\,\lambda$")
     laws = [

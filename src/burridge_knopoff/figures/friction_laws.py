@@ -24,9 +24,9 @@ INPUTS = ("mean_distance",)
 FROM_STUDY = ("law_descriptions", "shown_a")
 CAPTION = """\
 (a) The friction Φ of each law, as a fraction of the static friction, versus the velocity U' of a block, for the values
-of a given next to the brackets, up to the largest velocity in the runs at the larger of them. A stuck block (U' = 0,
-thick line) is held by friction of up to 1. (b) The least friction on a slipping block in each completed run, versus a.
-Symbols, drawn every few values of a, mark the initial state.
+of a given next to the brackets (if the law has one), up to the largest velocity in the runs at the larger of them. A
+stuck block (U' = 0, thick line) is held by friction of up to 1. (b) The least friction on a slipping block in each
+completed run, versus a. Symbols, drawn every few values of a, mark the initial state.
 """
 
 # Velocities that runs may reach; the whole range is drawn if the velocity does not follow from the friction.

@@ -13,6 +13,7 @@ from burridge_knopoff.figures.style import begin_at_zero, say, styled
 TITLE = "⟨J⟩ over the parameters"
 CATEGORY = "Synchronization"
 INPUTS = ("mean_distance",)
+CONDITION = "has_end_blocks"
 OVER = "several"
 CAPTION = """\
 The time average ⟨J⟩ of the phase-space distance between the end blocks over the parameters of the study, for each law

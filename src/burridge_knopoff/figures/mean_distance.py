@@ -33,6 +33,7 @@ TITLE = "⟨J⟩ versus a"
 CATEGORY = "Synchronization"
 PAPER = "Figs. 3a, 3b"
 INPUTS = ("mean_distance", "orbits")
+CONDITION = "has_end_blocks"
 CAPTION = """\
 The time average ⟨J⟩ of the phase-space distance between the end blocks versus a, for each law. Symbols: runs from each
 initial state, with bars of three standard errors. Dotted: a_c, at which the synchronized orbit changes its stability.

@@ -21,10 +21,11 @@ INPUTS = ("rotation",)
 CONDITION = "has_end_blocks"
 CAPTION = """\
 The rotation number ρ of branch 1, the unsynchronized motion, versus a: the number of oscillations of the end blocks
-against each other per oscillation of the middle block. By symmetry both end blocks have the same frequency, locked to
-the middle block or not. On a torus (quasiperiodic motion) this ratio varies with a. On a phase-locked, periodic orbit
-it is a rational number and constant, which gives a plateau; the widest plateaux are labelled with their ratio. The
-title of each panel says at how many of the grid's values of a on this branch the motion is locked.
+against each other per oscillation of the middle block. In a chain that is its own mirror image both end blocks have the
+same frequency, locked to the middle block or not. On a torus (quasiperiodic motion) this ratio varies with a. On a
+phase-locked, periodic orbit it is a rational number and constant, which gives a plateau; the widest plateaux are
+labelled with their ratio. The title of each panel says at how many of the grid's values of a on this branch the motion
+is locked.
 """
 
 # The widest plateaux, up to this number, are labelled with their ratio.

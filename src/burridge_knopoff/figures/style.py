@@ -18,6 +18,7 @@ from matplotlib.backend_bases import RendererBase, get_registered_canvas_class
 from matplotlib.container import Container, ErrorbarContainer
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.legend import Legend
 from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
 
@@ -201,12 +202,18 @@ def legend_entries(panels: Iterable[Axes]) -> tuple[list[Artist], list[str]]:
     return list(entries.values()), list(entries)
 
 
+class SideBySide(Container):
+    """An entry of a legend that shows several artists side by side."""
+
+
+Legend.update_default_handler_map({SideBySide: HandlerTuple(ndivide=None)})
+
+
 def legend_below(figure: Figure | SubFigure, *groups: Sequence[Artist]) -> None:
     """Put a legend below all panels, in as few rows as fit into the width of the figure, of about equal length.
 
-    groups : handles, of which a container shows its artists side by side; each group begins a row
+    groups : handles; each group begins a row
     """
-    side_by_side = {Container: HandlerTuple(ndivide=None)}
     filled = [group for group in groups if group]
     longest = max(map(len, filled), default=0)
     for rows in range(1, longest + 1):
@@ -214,7 +221,7 @@ def legend_below(figure: Figure | SubFigure, *groups: Sequence[Artist]) -> None:
         handles = [handle for group in filled for handle in _padded(group, columns if len(filled) > 1 else 1)]
         # Matplotlib fills columns; the legend is read by rows.
         in_rows = [handle for first in range(columns) for handle in handles[first::columns]]
-        legend = figure.legend(handles=in_rows, loc="outside lower center", ncols=columns, handler_map=side_by_side)
+        legend = figure.legend(handles=in_rows, loc="outside lower center", ncols=columns)
         if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
             return
         legend.remove()

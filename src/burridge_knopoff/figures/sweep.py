@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import xarray
 from matplotlib.axes import Axes
-from matplotlib.container import Container
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import AutoLocator
@@ -20,7 +19,7 @@ from burridge_knopoff.figures.palette import dashes, law_color, law_symbol, stat
 from burridge_knopoff.figures.parameter_panels import draw_map, panel_parts, varied_parameters
 from burridge_knopoff.figures.single_panel import draw_panel
 from burridge_knopoff.figures.strips import show_all
-from burridge_knopoff.figures.style import begin_at_zero, say
+from burridge_knopoff.figures.style import SideBySide, begin_at_zero, say
 
 LABEL = r"$\langle J\rangle$"
 
@@ -71,7 +70,7 @@ def _curves(panel: Axes, grid: xarray.Dataset) -> str:
         symbols = [
             Line2D([], [], **_look(n, k, grid) | ({"linestyle": ""} if many["law"] else {})) for n in range(len(laws))
         ]
-        panel.add_container(Container(symbols, label=f"from {state}"))
+        panel.add_container(SideBySide(symbols, label=f"from {state}"))
     panel.set(xlabel=f"${symbol(parameter)}$", ylabel=LABEL)
     _scale_to(panel, grid[parameter].values)
     if np.isfinite(grid["mean_distance"].values).any():

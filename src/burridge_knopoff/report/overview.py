@@ -121,6 +121,8 @@ def run_settings(study: Study) -> list[tuple[str, str]]:
     at_first = " at the first point" if study.is_plane else ""
     chain = next(iter(models.values())).chain
     omitted = () if study.is_plane else study.omitted_stages
+    threshold = text(config["synchronization_threshold"])
+    synchronized = [("Synchronized", f"if ⟨J⟩ < {threshold}")] if study.has_end_blocks else []
     without = [("Left out by the config", ", ".join(omitted))] if omitted else []
     return [
         ("Blocks", f"N = {chain.blocks}"),
@@ -134,7 +136,7 @@ def run_settings(study: Study) -> list[tuple[str, str]]:
             f"transient of {text(transient)}, then averages over τ = {text(transient)} to {text(transient + window)} "
             f"in {config['batches']} batches",
         ),
-        ("Synchronized", f"if ⟨J⟩ < {text(config['synchronization_threshold'])}"),
+        *synchronized,
         ("Runs", str(len(all_points(study)))),
         *without,
     ]

@@ -53,7 +53,7 @@ def embedded_runs(
     `agrees` says whether the other laws agree, over (other law, initial, a). Kinds of motion and periods are those of
     the attractor that the run has reached, from `agreement`.
 
-    `has_a` says whether any law contains a.
+    `has_a` says whether any law contains a, `has_end_blocks` whether there is a distance J.
     `first` are the indices of the run that the page shows first, which is that of the figures of single runs.
     `simulate` has the command for each law and initial state in two parts, with `--a` and its value between them.
     """
@@ -67,6 +67,7 @@ def embedded_runs(
         "texts": [repr(value) for value in study.grid.values()],
         "names": names,
         "has_a": study.has_a,
+        "has_end_blocks": study.has_end_blocks,
         "first": [study.laws.index(study.shown_law), 0, names.index(study.shown_point)],
         "mean_distance": _nested_lists(mean_distance["mean_distance"].values),
         "status": mean_distance["status"].values.tolist(),

@@ -58,23 +58,23 @@ def write_picture(result: Result, path: str | Path) -> str:
             raise ValueError(f"{result.path}: there is no picture of such a file")
         whole = f": {result.study_path(summary)}" if summary in result.files else ""
         raise ValueError(f"{result.path}: no picture of a part of a summary; plot the whole summary{whole}")
-    figure = _figure_of(result)
+    study = _study_of(result)
+    figure = _figure_of(result, study)
     inputs = [result if name == result.name else _open_neighbour(result, name) for name in figure.inputs]
     module = import_module(f"burridge_knopoff.figures.{figure.name}")
+    caption = figure.caption_of({}, study is not None and study.has_paper_chain)
     try:
-        drawn = module.draw(*(source.data for source in inputs), **_study_arguments(result, figure))
+        drawn = module.draw(*(source.data for source in inputs), **_study_arguments(study, figure))
     except (AttributeError, KeyError, IndexError, ValueError):
         paths = " with ".join(str(source.path) for source in inputs)
         old = any(not source.of_these_sources for source in inputs)
         reason = "made by other sources" if old else "not the results of one study"
         raise ValueError(f"{paths}: the figure {figure.name} cannot show them: {reason}") from None
     write_figure(drawn, path)
-    study = _study_of(result)
-    caption = figure.caption_of({}, study is not None and study.has_paper_chain)
     return f"{path}: {figure.title_of({})}. {caption}"
 
 
-def _figure_of(result: Result) -> Description:
+def _figure_of(result: Result, study: Study | None) -> Description:
     """Return the figure of a summary: the one with its name, otherwise the one that needs the fewest other files."""
     mean = result.data.get("mean_distance")
     # A study of several parameters has figures of its own for the same summaries.
@@ -84,7 +84,8 @@ def _figure_of(result: Result) -> Description:
         for figure in figure_descriptions()
         if result.name in figure.inputs
         and figure.over in (over, "any")
-        and (result.study or set(figure.from_study) <= WITHOUT_STUDY.keys())
+        and (not (study and figure.condition) or getattr(study, figure.condition))
+        and (study or set(figure.from_study) <= WITHOUT_STUDY.keys())
     ]
     if not figures:
         raise ValueError(f"{result.path}: there is no picture of such a file")
@@ -125,8 +126,7 @@ def _study_of(result: Result) -> Study | None:
     return Study(result.record["config"], result.record["grid"]) if result.study else None
 
 
-def _study_arguments(result: Result, figure: Description) -> dict[str, Any]:
-    study = _study_of(result)
+def _study_arguments(study: Study | None, figure: Description) -> dict[str, Any]:
     return {name: getattr(study, name) if study else WITHOUT_STUDY[name] for name in figure.from_study}
 
 

@@ -44,10 +44,11 @@ def point_keys(study: Study) -> list[str]:
 
 def study_keys(study: Study, name: str) -> list[str]:
     """Return the keys that decide a property of `Study` in a figure."""
+    chain = ["chain", "grid", "a_digits"] if study.is_plane else ["chain"]
     return {
         "marked_states": [*MODEL_KEYS, "initial", "basins.initial", "basins.a"],
-        "chain": ["chain", "grid", "a_digits"] if study.is_plane else ["chain"],
-        "has_paper_chain": ["chain"],
+        "chain": chain,
+        "has_paper_chain": chain,
         "law_descriptions": ["laws"],
         "shown_a": ["figures.a"],
         "shown_law": ["figures.law"],

@@ -24,7 +24,7 @@ function rowsOf({ law, initial, a }) {
   return [
     ["Run", element("span", {}, `${runs.laws[law]} law, initial state ${runs.initial[initial]}`,
       ...(runs.has_a ? [", ", element("i", {}, "a"), `\u00a0=\u00a0${runs.texts[a]}`] : []))],
-    [element("span", {}, "⟨", element("i", {}, "J"), "⟩"), at("mean_distance_text")],
+    ...(runs.has_end_blocks ? [[element("span", {}, "⟨", element("i", {}, "J"), "⟩"), at("mean_distance_text")]] : []),
     ["Status", runs.statuses[at("status")].replaceAll("_", " ")],
     ["Kind of motion", at("kind_text")],
     ["Lyapunov exponents", exponents.length ? element("ul", { class: "values" }, ...exponents.map((text) => element("li", {}, text))) : "none computed"],
