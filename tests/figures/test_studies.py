@@ -38,7 +38,9 @@ def test_every_figure_is_drawn_and_names_all_laws(small, tmp_path: Path):
     # key of the config.
     of_grids = {figure.name for figure in figure_descriptions() if figure.inputs == ("grid",)}
     of_keys = {"catalogue", "slip_map", "edges"}
-    of_ends = {"detuning", "rotation", "mean_distance", "distance"} if small.study.blocks == 1 else set()
+    of_ends = (
+        {"detuning", "rotation", "mean_distance", "distance", "grid_distance"} if small.study.blocks == 1 else set()
+    )
     assert missing <= {"chains", "phases", "orbits", "agreement", "two_blocks", *of_keys, *of_grids, *of_ends}
     for name, figure in drawn.items():
         write_figure(figure, tmp_path / f"{name}.png")

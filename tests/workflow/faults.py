@@ -53,14 +53,6 @@ def stages_running(study: Study) -> set[str]:
     return {stage(path) for path in running(study)}
 
 
-def remove_stages(study: Study, stages: Collection[str]) -> None:
-    """Remove the files of some stages."""
-    for results in (study.folder / "results").iterdir():
-        for path in results.rglob("*"):
-            if path.is_file() and stage(str(path.relative_to(results))) in stages:
-                path.unlink()
-
-
 def temporaries(study: Study) -> list[str]:
     """Return the files in results/ that have not been moved into place."""
     results = study.folder / "results"
@@ -98,21 +90,24 @@ def begin_fork(study: Study) -> Fork:
     return Fork(study.command(), study.folder, study.environment(), screen, screen, own_group=True)
 
 
-def wait_for(condition: Callable[[], object], process: subprocess.Popen[bytes] | Fork | None = None) -> bool:
-    """Wait until a condition holds; return False if the process ended before."""
+def wait_for(
+    condition: Callable[[], object], process: subprocess.Popen[bytes] | Fork | None = None, interval: float = 0.05
+) -> bool:
+    """Wait until a condition holds, at which one looks at intervals; return False if the process ended before."""
     end = time.monotonic() + PATIENCE
     while not condition():
         if process is not None and process.poll() is not None:
             return bool(condition())
         if time.monotonic() > end:
             raise TimeoutError(f"not within {PATIENCE:g} s")
-        time.sleep(0.05)
+        time.sleep(interval)
     return True
 
 
 def wait_for_stages(study: Study, stages: Collection[str], process: subprocess.Popen[bytes] | Fork) -> bool:
     """Wait until a job of one of the stages runs; return False if the process ended before."""
-    return wait_for(lambda: not stages_running(study).isdisjoint(stages), process)
+    # The jobs of some stages take a few hundredths of a second.
+    return wait_for(lambda: not stages_running(study).isdisjoint(stages), process, interval=0.005)
 
 
 def flag_named(text: str) -> str:
