@@ -40,22 +40,22 @@ def full_run(model) -> None:
     solver.run(1e4)
 
 
-def basins(pixels: int, threads: int) -> None:
+def basins(pixels: int, cores: int) -> None:
     """Measure the map of basins and print its table."""
     model = Model(Chain(3), law_of("linearized", A))
     attractors, _ = find_attractors(model, starts=list(PAPER_STATES.values()))
     state = PAPER_STATES["minus"]
 
-    def label(side: int, threads: int) -> tuple[np.ndarray, np.ndarray]:
+    def label(side: int, cores: int) -> tuple[np.ndarray, np.ndarray]:
         axis = pixel_centres((-1.5, 1.5), side)
         position, velocity = plane(state.position, axis, axis, state.velocity)
-        return label_states(model, attractors, position, velocity, cores=threads)
+        return label_states(model, attractors, position, velocity, cores=cores)
 
     begin_time = time.perf_counter()
-    labels, times = label(pixels, threads)
+    labels, times = label(pixels, cores)
     wall = time.perf_counter() - begin_time
     print(
-        f"{pixels} × {pixels} pixels, a = {A}, linearized law, {threads} threads",
+        f"{pixels} × {pixels} pixels, a = {A}, linearized law, {cores} cores",
         file=sys.stderr,
     )
     cost = cpu_times(
@@ -69,7 +69,7 @@ def basins(pixels: int, threads: int) -> None:
     pixel = cost["map"] / SAMPLE_PIXELS**2
     header = [
         "pixels",
-        "threads",
+        "cores",
         "minutes",
         "undetermined",
         "mean τ",
@@ -81,7 +81,7 @@ def basins(pixels: int, threads: int) -> None:
         [
             [
                 len(labels),
-                threads,
+                cores,
                 f"{wall / 60:.2f}",
                 int(np.count_nonzero(labels < 0)),
                 f"{times.mean():.0f}",
@@ -109,9 +109,9 @@ def main() -> None:
     """Measure and print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], allow_abbrev=False)
     parser.add_argument("--pixels", type=int, default=1024, help="pixels along each axis (default: %(default)s)")
-    parser.add_argument("--threads", type=int, default=2, help="threads (default: %(default)s)")
+    parser.add_argument("--cores", type=int, default=2, help="cores (default: %(default)s)")
     options = parser.parse_args()
-    basins(options.pixels, options.threads)
+    basins(options.pixels, options.cores)
     exponents()
 
 

@@ -11,9 +11,9 @@ from burridge_knopoff.attractors.attractor import Attractor, attractors_of
 from burridge_knopoff.attractors.settings import SEARCH
 from burridge_knopoff.kernel._core import Clouds
 from burridge_knopoff.model.model import STARTS, ChainState, Model
-from burridge_knopoff.model.ranges import Number, OneOf, Whole
+from burridge_knopoff.model.ranges import Number, OneOf
 from burridge_knopoff.motion.section_returns import state_of
-from burridge_knopoff.running.cores import available_cores
+from burridge_knopoff.running.cores import chosen_cores
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.settings import LONGEST
 from burridge_knopoff.running.threads import map_in_threads
@@ -138,7 +138,7 @@ def label_states(
         )
     OneOf(STARTS).form(start, "start")
     time_limit = Number(0.0, 10.0 * LONGEST, above=True).form(time_limit, "time_limit")
-    cores = available_cores() if cores is None else Whole(1, 1024).form(cores, "cores")
+    cores = chosen_cores(cores)
     cores = max(1, min(cores, len(position)))
     stuck = model.stuck_blocks(position, velocity, start)
     labels = np.full(len(position), UNDETERMINED, dtype=np.intc)

@@ -20,6 +20,7 @@ from burridge_knopoff.model.sampling import (
     VELOCITY_AT_SPEED,
     velocity_range,
 )
+from burridge_knopoff.running.cores import CORES
 from burridge_knopoff.running.settings import TIME
 from burridge_knopoff.values import instance_of
 
@@ -53,7 +54,7 @@ class BasinSettings:
         Whole(1, 16_384),
         "number of tiles (bands) into which a map is divided, one job each; at most `pixels`",
     ] = 2
-    cores: Annotated[int, Whole(1, 1024), "number of cores for each map or tile; the result does not depend on it"] = 1
+    cores: Annotated[int, CORES, "number of cores for each map or tile; the result does not depend on it"] = 1
 
     def __post_init__(self) -> None:
         check_fields(self)

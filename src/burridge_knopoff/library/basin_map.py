@@ -16,7 +16,7 @@ from burridge_knopoff.model.initial import OWN, InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.sampling import POSITIONS, VELOCITIES
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
-from burridge_knopoff.running.cores import available_cores
+from burridge_knopoff.running.cores import chosen_cores
 
 if TYPE_CHECKING:
     import xarray
@@ -97,7 +97,7 @@ def basin_map(
         first_velocity=first_velocity,
         pairs=0,
         tiles=1,
-        cores=available_cores() if cores is None else cores,
+        cores=chosen_cores(cores),
     )
     plane.rows(model)
     attractors, candidates = coexisting_attractors(model, settings, motion, starts=[state], start=start)

@@ -20,9 +20,9 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import STARTS, Model
 from burridge_knopoff.model.parameters import parameter_key
-from burridge_knopoff.model.ranges import OneOf, Whole
+from burridge_knopoff.model.ranges import OneOf
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
-from burridge_knopoff.running.cores import available_cores
+from burridge_knopoff.running.cores import chosen_cores
 from burridge_knopoff.values import elements, instance_of
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ def continue_attractors(
     chosen = settings_of(SearchSettings, settings, named)
     instance_of(motion, MotionSettings, "motion")
     OneOf(STARTS).form(start, "start")
-    cores = available_cores() if cores is None else Whole(1, 1024).form(cores, "cores")
+    cores = chosen_cores(cores)
     given = elements(starts)
     if given is None:
         raise refusal("starts", starts, "a list of initial states")

@@ -32,10 +32,9 @@ from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.parameters import parameter_key, parse_indexed_name, plain_name, remarks_on_states
-from burridge_knopoff.model.ranges import Whole
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
-from burridge_knopoff.running.cores import available_cores
+from burridge_knopoff.running.cores import chosen_cores
 from burridge_knopoff.running.runner import LOCKSTEP_RUNS, check_state, run_together
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import prepare
@@ -131,7 +130,7 @@ def sweep(
     chosen = settings_of(Settings, settings, named)
     if motion is not None:
         instance_of(motion, MotionSettings, "motion")
-    cores = available_cores() if cores is None else Whole(1, 1024).form(cores, "cores")
+    cores = chosen_cores(cores)
     laws, states = elements(law) or [law], named_states(initial)
     parameters = {name: value for name, value in (("a", a), *parameters.items()) if value is not None}
     sizes = [state_blocks(state) for state in states.values()]

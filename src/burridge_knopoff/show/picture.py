@@ -19,6 +19,7 @@ from burridge_knopoff.figures.style import PAGE, label_panels, new_figure, style
 from burridge_knopoff.messages import cut, format_value
 from burridge_knopoff.provenance.origin import Origin
 from burridge_knopoff.show.result import Result, open_result
+from burridge_knopoff.study.keys import condition_refusal
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.catalogue import summarize
 
@@ -84,7 +85,7 @@ def _figure_of(result: Result, study: Study | None) -> Description:
         for figure in figure_descriptions()
         if result.name in figure.inputs
         and figure.over in (over, "any")
-        and (not (study and figure.condition) or getattr(study, figure.condition))
+        and not (study and condition_refusal(study, figure.condition))
         and (study or set(figure.from_study) <= WITHOUT_STUDY.keys())
     ]
     if not figures:
