@@ -1,6 +1,8 @@
 # `make help` lists the targets, from the comments after them.
 
 PYTHON ?= python3
+# One core installs and checks while the other one compiles.
+MAKEFLAGS += --jobs=2
 BIN := .venv/bin
 KERNEL := $(foreach suffix,cpp h py,$(wildcard src/burridge_knopoff/kernel/*.$(suffix))) \
 	$(addprefix src/burridge_knopoff/provenance/,compilation.py kernel_build.py processor.py sources.py)
@@ -43,41 +45,46 @@ made_at = $(filter %/$(1),$(file <$(1)/pyvenv.cfg))
 MOVED := $(strip $(foreach folder,$(patsubst %/pyvenv.cfg,%,$(wildcard $(ENVIRONMENTS:=/pyvenv.cfg))), \
 	$(if $(filter-out $(CURDIR)/$(folder),$(call made_at,$(folder))),$(folder))))
 ifneq ($(MOVED),)
-.venv/study .venv-oldest/ready .venv-benchmark/ready .venv-mutants/ready: moved
+.venv/build .venv-oldest/ready .venv-benchmark/ready .venv-mutants/ready: moved
 .PHONY: moved
 moved:
 	@echo "make: this checkout was moved or copied, and what was made at its old place is set up again: $(MOVED)"
 	@rm -rf $(MOVED)
 endif
 
-.venv/study: requirements/pip.lock requirements/study.lock
+.venv/build: requirements/build.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=...")'
 	$(PYTHON) -m venv .venv
-	$(INSTALL) requirements/pip.lock
-	$(INSTALL) requirements/study.lock
+	$(INSTALL) $<
+	@touch $@
+
+.venv/study: requirements/study.lock .venv/build
+	$(INSTALL) $<
 	$(COMPILE)
 	@touch $@
 
-.venv/kernel: .venv/study setup.py pyproject.toml $(KERNEL)
+# Compiled while the rest is installed.
+.venv/compiled: .venv/build setup.py pyproject.toml $(KERNEL)
 	$(INSTALL_KERNEL)
 	@touch $@
 
+.venv/kernel: .venv/study .venv/compiled
+	@touch $@
+
 # Always run: the build itself compares the sources with those of the last one.
-kernel: .venv/study  ## compile the kernel again
+kernel: .venv/build  ## compile the kernel again
 	$(INSTALL_KERNEL)
-	@touch .venv/kernel
+	@touch .venv/compiled
 
 .venv/test: requirements/test.lock .venv/study
 	$(INSTALL) $<
 	$(COMPILE)
 	@touch $@
 
-# One core installs and checks while the other one compiles.
 test: QUICK := -m "not slow"
-test:  ## set up and run the quick checks
-test-all:  ## set up and run every check
+test: types style  ## set up and run the quick checks
+test-all: types style  ## set up and run every check
 test test-all:
-	@$(MAKE) --no-print-directory --jobs=2 types style
 	$(BIN)/python -m pytest $(QUICK)
 
 # The types of the kernel are in its stub file.
@@ -185,9 +192,9 @@ docs: .venv/kernel .venv/site  ## update all that the pages print from the defau
 
 # Needs uv. The lock files hold names, versions and hashes only.
 lock:  ## lock the versions of all requirements
-	cd requirements && for name in pip study; do uv pip compile --universal --python-version 3.11 --generate-hashes \
-		--no-emit-index-url --no-emit-find-links --no-annotate --no-header $$name.in -o $$name.lock; done
-	cd requirements && for name in site test benchmark mutants; do uv pip compile --universal --python-version 3.11 \
+	cd requirements && uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
+		--no-emit-find-links --no-annotate --no-header study.in -o study.lock
+	cd requirements && for name in build site test benchmark mutants; do uv pip compile --universal --python-version 3.11 \
 		--generate-hashes --no-emit-index-url --no-emit-find-links --no-annotate --no-header -c study.lock \
 		$$name.in -o $$name.lock; done
 

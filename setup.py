@@ -1,11 +1,14 @@
 """Compiles the kernel; everything else about the package is in pyproject.toml."""
 
+import hashlib
 import os
+import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
-from itertools import chain, repeat
+from itertools import repeat
 from pathlib import Path
 
 import nanobind
@@ -19,6 +22,8 @@ sys.dont_write_bytecode = True
 from burridge_knopoff.provenance.compilation import COMPILER_FLAGS, NANOBIND_FLAGS, vector_flags
 from burridge_knopoff.provenance.kernel_build import RECORD, current_build, recorded_build, write_record
 
+#: Compiled files of the tree's own kernel: a build compiles only those whose text has changed.
+OBJECTS = Path("build/objects")
 KERNEL = Path("src/burridge_knopoff/kernel")
 NANOBIND = f"{nanobind.source_dir()}/nb_combined.cpp"
 #: Folder of intermediate files, removed when this process ends.
@@ -73,6 +78,8 @@ class RecordedBuild(build_ext):
 
     def run(self) -> None:
         """Compile the kernel and write the record."""
+        # Setuptools forgets during the build that it is one in the tree.
+        self.objects = OBJECTS if self.inplace or self.editable_mode else Path(WORK.name)
         super().run()
         write_record(Path(self.get_ext_fullpath("burridge_knopoff.kernel._core")).parent)
 
@@ -80,19 +87,40 @@ class RecordedBuild(build_ext):
         """Compile the files of a module in parallel, which setuptools compiles one after the other."""
         require_compiler(self.compiler.compiler_so_cxx, self.compiler.include_dirs)
         compile_files = self.compiler.compile
+        self.objects.mkdir(parents=True, exist_ok=True)
+        used = set()
 
-        def compile_file(source: str, options: dict) -> list[str]:
-            own = {"extra_postargs": list(NANOBIND_FLAGS)} if source == NANOBIND else {}
-            return compile_files([source], **{**options, **own})
+        def compile_file(source: str, options: dict) -> str:
+            options = {**options, **({"extra_postargs": list(NANOBIND_FLAGS)} if source == NANOBIND else {})}
+            kept = self.objects / f"{Path(source).stem}-{self.digest(source, options)}.o"
+            used.add(kept)
+            if not kept.exists():
+                (compiled,) = compile_files([source], **options)
+                # A build that is killed leaves no part of a file by this name.
+                os.replace(shutil.copy(compiled, f"{kept}.new"), kept)
+            return str(kept)
 
         def compile_together(sources: list[str], **options: object) -> list[str]:
             # Setuptools requires that the sources of a module are in the tree, so this one is added here.
             files = [NANOBIND, *sources]
             with ThreadPoolExecutor(os.cpu_count()) as pool:
-                return list(chain.from_iterable(pool.map(compile_file, files, repeat(options))))
+                return list(pool.map(compile_file, files, repeat(options)))
 
         self.compiler.compile = compile_together
         super().build_extensions()
+        for path in {*self.objects.glob("*.o*")} - used:
+            path.unlink()
+
+    def digest(self, source: str, options: dict) -> str:
+        """Return a checksum of all on which a compiled file depends: its command, and its text after the preprocessor.
+
+        The macros of the compiler tell its version and the processor.
+        """
+        folders = [*self.compiler.include_dirs, *options["include_dirs"]]
+        flags = [*(f"-D{macro}" for macro, _ in options["macros"]), *(f"-I{folder}" for folder in folders)]
+        command = [*self.compiler.compiler_so_cxx, *flags, *options["extra_postargs"], source]
+        text = subprocess.run([*command, "-E", "-P", "-dD"], check=True, capture_output=True).stdout
+        return hashlib.sha256(shlex.join(command).encode() + text).hexdigest()[:16]
 
     def copy_extensions_to_source(self) -> None:
         """Replace the kernel in the tree, for an editable installation."""

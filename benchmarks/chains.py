@@ -21,7 +21,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 import numpy as np
 from measure import cpu_times, print_table
 
-from burridge_knopoff import Chain, ChainState, InitialState, Model, law_of, simulate
+from burridge_knopoff import Chain, ChainState, InitialState, Law, Model, law_of, simulate
 from burridge_knopoff.catalogue.events import MOST_EVENTS
 from burridge_knopoff.kernel._core import Catalogue, Exponents
 from burridge_knopoff.running.runner import Runner
@@ -42,10 +42,10 @@ VARIANTS = {
 }
 
 
-def near_sliding(blocks: int, law: str) -> InitialState:
+def near_sliding(blocks: int, law: Law) -> InitialState:
     """Return a random state near uniform sliding, the same in every run of the benchmark."""
     random = np.random.default_rng(blocks)
-    offset = Chain(blocks).sliding_offset(float(law_of(law, A)(V)))
+    offset = Chain(blocks).sliding_offset(float(law(V)))
     position = offset + PERTURBATION * random.uniform(-1.0, 1.0, blocks)
     velocity = V + PERTURBATION * random.uniform(-1.0, 1.0, blocks)
     return InitialState("near_sliding", tuple(position.tolist()), tuple(velocity.tolist()))
@@ -59,7 +59,7 @@ def by_solver(rounds: int) -> None:
         duration = TRANSIENT + window
 
         def contestant(law: str, solver: str, blocks: int = blocks, window: float = window):
-            initial = near_sliding(blocks, law)
+            initial = near_sliding(blocks, law_of(law, A))
             settings = {"transient": TRANSIENT, "window": window, "events": "all", "lyapunov_exponents": 0}
             return lambda: simulate(law, A, initial, v=V, solver=solver, **settings)
 

@@ -1,7 +1,10 @@
-"""CPU time of slip events in a square lattice with springs 9/r³ between all blocks, by the number of slipping blocks.
+"""CPU time of slip events in dense networks: by the number of slipping blocks, and by that of neighbours.
 
-All blocks rest at half of their threshold, but for some that start at one instant: each slips once, and starts no other
-block. The driver is at rest while they slip. A run begins with the sum over all springs, which is not counted.
+In a square lattice with springs 9/r³ between all blocks, all blocks rest at half of their threshold, but for some that
+start at one instant: each slips once, and starts no other block. The driver is at rest while they slip. A run begins
+with the sum over all springs, which is not counted.
+
+In a ring with springs 3/r to the nearest neighbours, blocks start from random positions, and many slip together.
 
 With `--before`, the interpreter of another installation, the same events are timed there in alternation; the ratio is
 that of this installation to the other.
@@ -28,6 +31,9 @@ SIDES = (6, 10, 16, 24)
 SLIPPING = (1, 2, 8)
 LAW = law_of("carlson_langer", 0.5, {"sigma": 0.2})
 V = 0.01
+#: Neighbours on each side in a ring, on both sides of the number from which on forces follow by increments.
+NEIGHBOURS = (1, 4, 5, 10, 30)
+RING, RING_LAW, RING_END = 1000, law_of("carlson_langer", 2.0, {"sigma": 0.2}), 1.0
 
 
 def lattice(side: int, folder: str) -> Model:
@@ -60,10 +66,23 @@ def event_time(model: Model, slipping: int) -> float:
     return 1e6 * spent
 
 
+def ring_time(neighbours: int) -> float:
+    """Return the CPU time per start or stop in a ring with springs to so many blocks on each side, in µs."""
+    springs = {"distance": "3/r", "cut_off": neighbours}
+    model = Model(Chain(RING, ends="ring", springs=springs, pulling=1.0), RING_LAW, V)
+    position = np.random.default_rng(1).uniform(-0.9, -0.7, RING) - model.sliding_offset
+    runner = Runner(model)
+    runner.begin(ChainState(position, np.zeros(RING), np.ones(RING, dtype=bool)))
+    begin = time.process_time()
+    runner.run(RING_END)
+    return 1e6 * (time.process_time() - begin) / runner.log.count
+
+
 def times(folder: str) -> list[float]:
-    """Return the CPU times of all lattices and numbers of slipping blocks."""
+    """Return the CPU times of all lattices and numbers of slipping blocks, and of all rings."""
     models = {side: lattice(side, folder) for side in SIDES}
-    return [event_time(models[side], slipping) for side in SIDES for slipping in SLIPPING]
+    events = [event_time(models[side], slipping) for side in SIDES for slipping in SLIPPING]
+    return events + [ring_time(neighbours) for neighbours in NEIGHBOURS]
 
 
 def main() -> None:
@@ -88,13 +107,15 @@ def main() -> None:
             for _ in range(options.rounds)
         ]
     least = np.min(rounds, axis=0)
-    rows, k = [], 0
-    for side in SIDES:
-        for slipping in SLIPPING:
-            ratio = [f"{least[0, k] / least[1, k]:.3f}", f"{least[1, k]:.0f}"] if options.before else ["", ""]
-            rows.append([f"{side} × {side}", slipping, f"{least[0, k]:.0f}", *ratio])
-            k += 1
-    print_table(["lattice", "slipping blocks", "µs/event", "ratio to before", "before, µs/event"], rows)
+    cells = [[f"{spent:.0f}", "", ""] for spent in least[0]]
+    if options.before:
+        cells = [[f"{spent:.0f}", f"{spent / before:.3f}", f"{before:.0f}"] for spent, before in least.T]
+    cases = [[f"{side} × {side}", slipping] for side in SIDES for slipping in SLIPPING]
+    measured = ["µs/event", "ratio to before", "before, µs/event"]
+    rows = [case + cell for case, cell in zip(cases, cells[: len(cases)], strict=True)]
+    print_table(["lattice", "slipping blocks", *measured], rows)
+    rows = [[neighbours, *cell] for neighbours, cell in zip(NEIGHBOURS, cells[len(cases) :], strict=True)]
+    print_table([f"ring of {RING}: neighbours on each side", *measured], rows)
 
 
 if __name__ == "__main__":

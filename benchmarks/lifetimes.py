@@ -18,7 +18,8 @@ import numpy as np
 import xarray
 from measure import print_table
 
-from burridge_knopoff.attractors.lifetime import EXPOSURE, Lifetime, lifetimes
+from burridge_knopoff.attractors.attractor import Lifetime
+from burridge_knopoff.attractors.lifetime import EXPOSURE, lifetimes
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.stored_returns import known_attractors
 from burridge_knopoff.motion.kind import MotionKind

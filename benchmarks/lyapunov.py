@@ -14,21 +14,23 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 from chains import near_sliding
 from measure import cpu_times, print_table
 
-from burridge_knopoff import InitialState, simulate
+from burridge_knopoff import FormulaLaw, InitialState, Law, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 
 A = 0.08
-LAWS = ("linearized", "nonlinear")
+#: A power steepens with the speed, beyond all speeds of slips.
+POWER = "1 - a*u + 0.3*u**6"
+LAWS = (law_of("linearized", A), law_of("nonlinear", A), FormulaLaw(A, POWER))
 TRANSIENT, WINDOW = 3000.0, 7000.0
 LONG_CHAIN = 10
 
 
-def compare(law: str, initial: InitialState, window: float, counts: tuple[int, ...], rounds: int) -> list[list[str]]:
+def compare(law: Law, initial: InitialState, window: float, counts: tuple[int, ...], rounds: int) -> list[list[str]]:
     """Return a row for each number of exponents."""
 
     def contestant(count: int):
         settings = {"transient": TRANSIENT, "window": window, "events": "all", "lyapunov_alignment": TRANSIENT}
-        return lambda: simulate(law, A, initial, lyapunov_exponents=count, **settings)
+        return lambda: simulate(law, initial=initial, lyapunov_exponents=count, **settings)
 
     runs = {str(count): contestant(count) for count in (0, *counts)}
     for run in runs.values():
@@ -42,7 +44,7 @@ def compare(law: str, initial: InitialState, window: float, counts: tuple[int, .
                 f"{ratio:.2f}",
                 str(count),
                 str(len(initial.position)),
-                law,
+                law.formula if isinstance(law, FormulaLaw) else law.name,
                 initial.name,
                 f"{1e3 * seconds['0']:.1f}",
                 f"{1e3 * seconds[str(count)]:.1f}",

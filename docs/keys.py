@@ -22,7 +22,6 @@ from burridge_knopoff.model.random_numbers import RandomNumbers
 from burridge_knopoff.model.ranges import (
     Either,
     Interval,
-    IntervalAtSpeed,
     Named,
     Number,
     OneOf,
@@ -32,6 +31,7 @@ from burridge_knopoff.model.ranges import (
     TrueOrFalse,
     Whole,
 )
+from burridge_knopoff.model.sampling import IntervalAtSpeed
 from burridge_knopoff.model.springs import NetworkSprings
 from burridge_knopoff.study.config import CONFIG, LawKeys
 

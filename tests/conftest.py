@@ -174,6 +174,7 @@ def maps(monkeypatch):
     """Let searches follow maps of the line, see `tests.maps`."""
     from burridge_knopoff.attractors import candidates, convergence, labels, search, slow_set
     from burridge_knopoff.motion import classification
+    from burridge_knopoff.periodic_orbits.flow import OrbitError
     from tests.maps import Clouds, Ensemble, observe, visit
 
     monkeypatch.setattr(candidates, "sliding_motion", lambda _: SimpleNamespace(exponent=[1.0]))
@@ -183,3 +184,8 @@ def maps(monkeypatch):
     monkeypatch.setattr(labels, "Clouds", Clouds)
     monkeypatch.setattr(classification, "observe", observe)
     monkeypatch.setattr(classification, "locked_orbit", lambda *_: None)
+
+    def no_flow(*_):
+        raise OrbitError("a map has no orbits of a flow")
+
+    monkeypatch.setattr(candidates, "limit_cycle", no_flow)

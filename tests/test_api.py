@@ -30,6 +30,7 @@ def test_every_name_is_documented(name):
         assert set(code.co_varnames[: code.co_argcount + code.co_kwonlyargcount + flags]) <= described
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_the_examples_of_a_name_run(name, tmp_path, monkeypatch):
     if name == "open_study":

@@ -171,6 +171,7 @@ def test_times_longer_than_the_run_are_reported(tmp_path, capsys):
     ]
 
 
+@pytest.mark.slow
 def test_the_cost_of_a_long_chain_is_printed_before_the_run(tmp_path):
     options = "--law nonlinear --a 0.3 --blocks 100000 --position=-0.9 --velocity 0.1 --initial all --trajectory 1"
     command = [BK, "simulate", *options.split(), "--lyapunov-exponents", "0", "--out", tmp_path / "x.nc"]
@@ -312,7 +313,6 @@ def test_no_events(tmp_path):
         (["orbit", *RUN[1:3], "--a", "3"], "a = 3.0"),
         (["orbit", *RUN[1:5], "--threshold", "1,2,3"], "chain: "),
         (["show", "x.nc"], "x.nc: "),
-        (["prune", "."], " .: "),
         (["completion", "csh"], "'csh'"),
     ],
 )

@@ -55,7 +55,7 @@ for point in all_points(study):
     out.parent.mkdir(parents=True, exist_ok=True)
     chosen = [f"--{name}={value}" for name, value in point.items()]
     assert main(["simulate", *chosen, *words, "--out", str(out)]) == 0
-summary = summarize(study, results, period_tolerance=1e-6, longest_period=20.0)
+summary = summarize(study, results, period_tolerance=1e-6, longest_period=20.0, synchronization_threshold=1e-6)
 def expected(run):
     sticks, stopped = [], {}
     for time, block, kind in zip(run.event_time, run.event_block, run.event_kind):

@@ -62,7 +62,7 @@ def test_without_a_compiler_make_says_in_one_line_what_to_install(repository, tm
     if program:
         compiler.write_text(program)
         compiler.chmod(0o755)
-    command = ["make", "-o", ".venv/study", "kernel", f"BIN={Path(sys.executable).parent}"]
+    command = ["make", "-o", ".venv/build", "kernel", f"BIN={Path(sys.executable).parent}"]
     outside = {key: value for key, value in os.environ.items() if not key.startswith("MAKE")}
     environment = {**outside, "CXX": str(compiler), "LC_ALL": "C"}
     run = subprocess.run(command, cwd=repository, env=environment, capture_output=True, text=True)
@@ -72,6 +72,25 @@ def test_without_a_compiler_make_says_in_one_line_what_to_install(repository, tm
     assert reason in line
     assert "apt install g++ python3-dev" in line
     assert end.startswith("make: ***")
+
+
+def test_an_edit_of_a_source_compiles_that_source_alone(repository, tmp_path):
+    for name in ("setup.py", "pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(repository / name, tmp_path)
+    for name in ("src", "build/objects"):
+        shutil.copytree(repository / name, tmp_path / name)
+    source = tmp_path / "src/burridge_knopoff/kernel/creep.cpp"
+    compiled = {}
+    for text in ("// a comment", "int added_by_a_test;"):
+        source.write_text(f"{source.read_text()}{text}\n")
+        build = [sys.executable, "setup.py", "--quiet", "build_ext", "--inplace", "--force"]
+        subprocess.run(build, cwd=tmp_path, check=True, capture_output=True)
+        compiled[text] = {path.name: path.stat().st_mtime for path in (tmp_path / "build/objects").iterdir()}
+    before, after = compiled.values()
+    # A comment changes no code.
+    assert set(before) == {path.name for path in (repository / "build/objects").iterdir()}
+    assert [name.split("-")[0] for name, time in after.items() if before.get(name) != time] == ["creep"]
+    assert len(after) == len(before)
 
 
 #: Stands for Python: it makes an environment with itself as Python, and logs what it does there.
@@ -113,7 +132,7 @@ def make(folder, *targets):
 def test_make_sets_up_once(checkout):
     output, log = make(checkout, "setup", ".venv-mutants/ready")
     assert log == ""
-    assert output.startswith("Next: source .venv/bin/activate")
+    assert "Next: source .venv/bin/activate" in output
 
 
 @pytest.mark.parametrize("copied", [False, True])

@@ -149,8 +149,8 @@ study, stop = load_study({config!r}, "short.yaml"), stop_on_interrupt()
 arguments = study, {point!r}, "point.nc", "logs/point.log", ".", stop
 pool = ThreadPoolExecutor(1)
 job = pool.submit(run_point_job, *arguments)
-print("begun", flush=True)
 try:
+    print("begun", flush=True)
     job.result()
 except KeyboardInterrupt:
     # As Snakemake does.

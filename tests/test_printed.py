@@ -99,7 +99,7 @@ def test_no_other_function_makes_a_command(path):
     if path.name != "messages.py":
         assert not re.search(r"shlex\.(join|quote)", text)
         # A line with a command, into which a value is written.
-        assert not re.search(r"(bk (check|prune|show)|snakemake|cd) \{", text)
+        assert not re.search(r"(bk (check|show)|snakemake|cd) \{", text)
 
 
 @pytest.fixture(scope="module")
@@ -145,7 +145,7 @@ HISTORIES = [
     ("bk simulate --law x; touch evil", "reproduce with: bk simulate --law 'x;' touch evil --out FILE"),
     ("bk simulate --a $(touch evil)", "reproduce with: bk simulate --a '$(touch' 'evil)' --out FILE"),
     ("rm -rf ~", "history: rm -rf ~"),
-    ("bk prune results", "history: bk prune results"),
+    ("bk check results", "history: bk check results"),
     ("bk simulate 'open", "history: bk simulate 'open"),
 ]
 
@@ -209,7 +209,7 @@ def test_a_file_that_does_not_say_what_made_it_is_refused_in_a_line(written, tmp
 
 def test_findings_are_printed_as_lines(capsys, tmp_path):
     finding = Finding("outdated", Path(f"a{CONTROLS}.yaml"), f"got {CONTROLS}")
-    print_lines(*Check(tmp_path / "results/x", "1 point", [], [finding], []).lines())
+    print_lines(*Check(tmp_path / "results/x", "1 point", [], [finding], [], []).lines())
     assert capsys.readouterr().out.count("\n") == 2
 
 

@@ -27,6 +27,13 @@ def claims(repository) -> dict[str, str]:
     return claim_sections(repository)
 
 
+def test_the_two_commands_of_a_fresh_machine_stand_together_before_the_paper(repository):
+    first_screen = (repository / "README.md").read_text(encoding="utf-8").partition("\n## ")[0]
+    blocks = re.findall(r"```sh\n(.*?)```", first_screen, re.DOTALL)
+    commands = [[line.partition("#")[0].strip() for line in block.splitlines()] for block in blocks]
+    assert any({"make", "make test"} <= {*block} for block in commands)
+
+
 @pytest.mark.parametrize(("row", "claim", "printed"), NUMBERS)
 def test_the_numbers_are_those_of_the_ledger(repository, claims, row, claim, printed):
     text = (repository / "README.md").read_text(encoding="utf-8")
@@ -70,6 +77,7 @@ def test_the_time_of_the_study_is_that_of_a_dry_run(repository, tmp_path):
         assert f"{minutes} minutes on two cores" in text
 
 
+@pytest.mark.slow
 def test_the_first_lines_of_python_print_and_draw_what_the_page_shows(repository, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     [(_, expected, printed)] = outputs((repository / "README.md").read_text(encoding="utf-8"), "README.md")

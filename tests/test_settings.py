@@ -28,7 +28,7 @@ from burridge_knopoff.attractors.settings import SEARCH
 from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.model.fields import fields_of
-from burridge_knopoff.model.initial import ContinuedState, PaperState
+from burridge_knopoff.model.initial import PaperState, StartedState
 from burridge_knopoff.model.physical_units import PhysicalUnits
 from burridge_knopoff.model.ranges import Interval, Number, OneOf, Several, TrueOrFalse, Whole
 from burridge_knopoff.motion.chain_settings import Sample
@@ -59,7 +59,7 @@ def classes():
     return sorted(
         (
             kind
-            for kind in {*settings_classes} - {ContinuedState}
+            for kind in {*settings_classes} - {StartedState}
             if kind.__name__.endswith("Settings") or has_ranges(kind)
         ),
         key=lambda kind: kind.__name__,

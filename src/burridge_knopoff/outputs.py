@@ -6,7 +6,7 @@ The rules say how the files are made. `tests/workflow/test_rules.py` compares th
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from typing import NamedTuple
@@ -230,14 +230,26 @@ def benchmark_of(log: str) -> str:
 
 def rule_of(name: str) -> str:
     """Return the rule that makes files of a name in the results of some study; empty if none does."""
-    return next((rule for rule, pattern in _patterns().items() if pattern.fullmatch(name)), "")
+    return next((rule for rule, _, _ in _jobs_of(name)), "")
+
+
+def job_log(name: str) -> str:
+    """Return the log of the job that makes a file of a name in the results of some study; empty if none does."""
+    return next((log_of(first.format(**job)) for _, first, job in _jobs_of(name)), "")
+
+
+def _jobs_of(name: str) -> Iterator[tuple[str, str, dict[str, str]]]:
+    """Yield the rule, the first file and the wildcards of the jobs that make a file of a name."""
+    for pattern, rule, first in _patterns():
+        if match := pattern.fullmatch(name):
+            yield rule, first, match.groupdict()
 
 
 @cache
-def _patterns() -> dict[str, re.Pattern[str]]:
-    return {rule: pattern_of(item.names.split()) for rule, item in outputs().items()}
-
-
-def pattern_of(names: Iterable[str]) -> re.Pattern[str]:
-    """Return the pattern of names with wildcards in braces."""
-    return re.compile("|".join(names).replace(".", r"\.").format(**WILDCARDS))
+def _patterns() -> list[tuple[re.Pattern[str], str, str]]:
+    groups = {name: f"(?P<{name}>{pattern})" for name, pattern in WILDCARDS.items()}
+    return [
+        (re.compile(name.replace(".", r"\.").format(**groups)), rule, item.names.split()[0])
+        for rule, item in outputs().items()
+        for name in item.names.split()
+    ]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import atexit
+import math
 import os
 import signal
 import subprocess
@@ -15,7 +17,7 @@ from typing import TYPE_CHECKING, TextIO
 
 from burridge_knopoff.messages import escape_unprintable
 from burridge_knopoff.outputs import benchmark_of
-from burridge_knopoff.provenance.files import remove_links, reserved_room
+from burridge_knopoff.provenance.files import check_target, remove_links, reserved_room
 from burridge_knopoff.study.job_log import INTERRUPTED
 from burridge_knopoff.study.study import Study
 
@@ -55,16 +57,22 @@ class Interrupt:
 def stop_on_interrupt() -> Interrupt:
     """Return what Ctrl-C sets."""
     stop = Interrupt()
-    previous = signal.getsignal(signal.SIGINT)
+    previous, last = signal.getsignal(signal.SIGINT), -math.inf
 
     def interrupt(number: int, frame: object) -> None:
+        nonlocal last
+        # The first of several within a second ends the run, undisturbed by the others.
+        now = time.monotonic()
+        is_repeated, last = now - last < 1.0, now
         stop.set()
-        if callable(previous):
+        if callable(previous) and not is_repeated:
             previous(number, frame)  # type: ignore[arg-type]
 
     # Only the main thread can set a handler. Without one a run ends before the process does.
     if previous is not signal.SIG_IGN and threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGINT, interrupt)
+        # Python gives the signal its default at the end, when a late repetition would kill the process.
+        atexit.register(signal.signal, signal.SIGINT, signal.SIG_IGN)
     return stop
 
 
@@ -116,9 +124,11 @@ def run_point_command(command: str, path: str, log: str, results: str) -> None:
 
 
 def _benchmark(log: str, results: str) -> Path:
-    """Return the file with the times of a job; neither it nor the log may be a link to another file."""
+    """Return the file with the times of a job; neither it nor the log may be a link to another file, or a pipe."""
     benchmark = Path(results, benchmark_of(Path(log).relative_to(results).as_posix()))
     remove_links(log, benchmark)
+    for path in (log, benchmark):
+        check_target(path)
     return benchmark
 
 

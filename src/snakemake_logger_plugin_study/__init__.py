@@ -155,7 +155,7 @@ class LogHandler(LogHandlerBase):
     def _last_lines(self) -> Sequence[str]:
         assert self._plan is not None
         if not self._has_jobs and not self._has_stopped:
-            # No hook of the Snakefile runs then; `bk check` and `bk prune` would use the config of an earlier run.
+            # No hook of the Snakefile runs then; `bk check` would use the config of an earlier run.
             if not self.common_settings.dryrun:
                 self._plan.record()
             return [NOTHING]

@@ -78,7 +78,8 @@ def _remedies(results: Path, failed: Sequence[Job], arguments: Sequence[str]) ->
     # A log may be that of whoever sent the results.
     files = [file for file in bad_files(path for job in failed for path in job.log) if _is_in(results, file)]
     if files:
-        return [f"this command recreates the bad files and continues: {remake_command(results / NAME, *files)}"]
+        remake = remake_command(results / NAME, *files, is_own_run=True)
+        return [f"this command recreates the bad files and continues: {remake}"]
     if all(failure_reason(job.log) == SILENT for job in failed):
         if (words := without_force(arguments)) == [*arguments]:
             return ["Run the same command again to continue."]

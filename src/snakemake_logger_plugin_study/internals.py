@@ -2,12 +2,42 @@
 
 from __future__ import annotations
 
+import inspect
+import os
+import re
+import resource
+import signal
+import subprocess
 import sys
-from collections.abc import Collection, Iterator, Mapping, Sequence
+import threading
+import time
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import psutil
+
 from burridge_knopoff.running.cores import available_cores
+from burridge_knopoff.script_server import Script, ScriptServer
+
+#: Seconds in which threads end after SIGTERM once no process of a job is left.
+PATIENCE = 10.0
+
+#: The arguments of Snakemake's `script` from which the object `snakemake` of a script is made, in this order, and those
+#: that name another environment.
+OF_SCRIPT = (
+    *("input", "output", "params", "wildcards", "threads", "resources", "log", "config", "rulename"),
+    "bench_iteration",
+)
+ELSEWHERE = ("conda_env", "container_img", "env_modules", "shadow_dir")
+#: Variables of the environment that Snakemake sets to the threads, and to the temporary folder, of a job.
+THREADS = tuple(f"{name}_NUM_THREADS" for name in ("OMP", "GOTO", "OPENBLAS", "MKL", "NUMEXPR"))
+TEMPORARY = ("TMPDIR", "TMP", "TEMPDIR", "TEMP")
+
+#: What matplotlib imports when it writes a figure.
+BACKENDS = ("matplotlib.backends.backend_agg", "matplotlib.backends.backend_pdf")
+
+_IMPORTED = re.compile(r"^(?:from|import) (burridge_knopoff[.\w]*)", re.MULTILINE)
 
 
 def log_handlers(workflow: Any) -> Sequence[Any]:
@@ -75,6 +105,31 @@ def start_no_timers(workflow: Any) -> None:
         workflow.scheduler.job_rate_limiter = None
 
 
+def end_on_termination(workflow: Any, stop: Any, server: ScriptServer) -> None:
+    """Let SIGTERM end a run on this machine as Ctrl-C does; stop : ends the points in threads.
+
+    Snakemake's own handler waits for a lock that the scheduler may hold. Its threads are waited for as long as one has
+    a process, since any other may wait for ever, for example for the reader of a named pipe.
+    """
+
+    def leave() -> None:
+        while {process.pid for process in psutil.Process().children(recursive=True)} - {server.pid}:
+            time.sleep(1.0)
+        time.sleep(PATIENCE)
+        workflow.persistence.unlock()
+        os.write(2, b"stopped: a thread did not end\n")
+        os._exit(1)
+
+    def end(number: int, frame: object) -> None:
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        stop.set()
+        threading.Thread(target=leave, daemon=True).start()
+        raise KeyboardInterrupt
+
+    if not workflow.non_local_exec and threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, end)
+
+
 def run_in_thread(rule: Any, command: str) -> None:
     """Let the jobs of a rule with a `run` block run in threads of Snakemake, with a shell command that does the same.
 
@@ -82,6 +137,68 @@ def run_in_thread(rule: Any, command: str) -> None:
     command. It shows that command with -p and in its records, and calls the block.
     """
     rule.rule.shellcmd = command
+
+
+def script_in_fork(
+    workflow: Any, script: Callable[..., None], server: ScriptServer, folder: Path
+) -> Callable[..., None]:
+    """Return what runs the scripts of rules: those of a folder in forks of a server, under Linux and on this machine.
+
+    A start of Python takes longer than most of them work. Their benchmarks hold all CPU time that they used: Snakemake
+    samples it, and misses what processes use after their last sample.
+
+    script : Snakemake's own function, by whose name a compiled rule calls it. It runs all others: on a cluster, in an
+        environment or a container, from another folder, and if its arguments have changed
+    """
+
+    def run(*arguments: Any) -> None:
+        before = _seconds_of_children()
+        try:
+            from snakemake.benchmark import benchmarked
+
+            job = inspect.signature(script).bind(*arguments).arguments
+            record = job["bench_record"]
+            process = None if workflow.remote_exec else _begin(job, server, folder)
+        except (AttributeError, ImportError, KeyError, TypeError):
+            record = process = None
+        if process is None:
+            script(*arguments)
+            # A cluster runs one job at a time in a process of Snakemake.
+            if record and workflow.remote_exec:
+                record.cpu_time = _seconds_of_children() - before
+            return
+        with benchmarked((record and process.pid) or False, record):
+            end = process.run()
+        if end.code:
+            raise subprocess.CalledProcessError(end.code, str(job["path"]))
+        if record:
+            record.cpu_time, record.cpu_usage = end.seconds, 100.0 * end.seconds
+            # The only sample of a quick one is that of its begin.
+            record.max_rss, record.max_pss = (max(size or 0.0, end.memory) for size in (record.max_rss, record.max_pss))
+
+    return run
+
+
+def _begin(job: Mapping[str, Any], server: ScriptServer, folder: Path) -> Script | None:
+    """Begin the script of a job in a fork; return None if Snakemake has to run it."""
+    from snakemake.iocontainers import Snakemake
+
+    path = Path(job["basedir"].get_path_or_uri(secret_free=True), job["path"]).resolve()
+    if sys.platform != "linux" or path.parent != folder or any(job[name] for name in ELSEWHERE):
+        return None
+    variables = {"snakemake": Snakemake(*(job[name] for name in OF_SCRIPT), str(folder))}
+    modules = [Snakemake.__module__, *_IMPORTED.findall(path.read_text()), *(BACKENDS if path.stem == "figure" else ())]
+    # Of the params between the name of the script and the fingerprint.
+    modules += job["params"].sources.split()[1:-1]
+    environment = dict.fromkeys(THREADS, str(job["threads"]))
+    environment |= dict.fromkeys(TEMPORARY, str(job["resources"].tmpdir))
+    return server.begin(path, variables, modules, environment)
+
+
+def _seconds_of_children() -> float:
+    """Return the CPU time of the processes that this one has waited for."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def describe(rule: Any, words: str) -> None:

@@ -19,6 +19,7 @@ from burridge_knopoff import (
     synchronized_orbit,
 )
 from burridge_knopoff.attractors import asymptotic_states as module
+from burridge_knopoff.attractors import lifetime
 from burridge_knopoff.attractors.asymptotic_states import AsymptoticState, asymptotic_states
 from burridge_knopoff.attractors.labels import UNDETERMINED, advance
 from burridge_knopoff.attractors.lifetime import Lifetime
@@ -113,6 +114,7 @@ def test_weak_chaos_is_chaos_from_every_state_that_reaches_it():
     assert states[0].mean_distance_error < 2e-3 * states[0].mean_distance
 
 
+@pytest.mark.slow
 def test_states_are_followed_out_of_transient_chaos(monkeypatch):
     """At a = 0.18 (linearized) chaos persists; if it is declared transient, its states remain undetermined."""
     model = pair("linearized", 0.18)
@@ -123,7 +125,7 @@ def test_states_are_followed_out_of_transient_chaos(monkeypatch):
         kinds = [attractor.motion.kind for attractor in attractors]
         return [Lifetime(9, 900.0) if kind == MotionKind.CHAOTIC else None for kind in kinds]
 
-    monkeypatch.setattr(module, "lifetimes", dying)
+    monkeypatch.setattr(lifetime, "lifetimes", dying)
     states = asymptotic_states(model, STATES)
     assert {k for k in range(8) if repr(states[k]) == repr(AsymptoticState())} == {*chaotic}
     assert {states[k].kind for k in range(8) if k not in chaotic} == {MotionKind.PERIODIC}
@@ -166,6 +168,7 @@ def test_the_average_over_chaos_and_its_mirror_image_is_used(script_answers, at,
     assert (state.mean_distance, state.mean_distance_error) == ((0.2, 0.01) if whole else (0.3, 0.0))
 
 
+@pytest.mark.slow
 def test_mirror_images_have_the_same_numbers():
     """The thin chaos of two blocks lies on one side, and its mirror image on the other."""
     model, state = pair("linearized", 0.08), STATES[0]

@@ -280,7 +280,8 @@ def test_runs_of_any_model_end_on_its_attractors(found_model):
             assert run.mean_distance == pytest.approx(expected.mean_distance, abs=1e-3 + error)
 
 
-@pytest.mark.parametrize(("coupling", "section_period"), [pytest.param(1.5, 0, marks=pytest.mark.slow), (2.0, 104)])
+@pytest.mark.slow
+@pytest.mark.parametrize(("coupling", "section_period"), [(1.5, 0), (2.0, 104)])
 def test_synchrony_of_a_long_period_is_synchrony(coupling, section_period):
     """Strong coupling: the end blocks move as one, and the middle block repeats only after many of their periods.
 

@@ -30,12 +30,13 @@ def label_one_by_one(model, attractors, starts, end):
     return labels, times
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("blocks", "a", "share", "first", "last"),
     [
         (3, 0.08, 1.0, 150.0, 1500.0),
-        pytest.param(3, 0.15, 0.98, 150.0, 1500.0, marks=pytest.mark.slow),
-        pytest.param(4, 0.02, 1.0, 1500.0, 4000.0, marks=pytest.mark.slow),
+        (3, 0.15, 0.98, 150.0, 1500.0),
+        (4, 0.02, 1.0, 1500.0, 4000.0),
     ],
 )
 def test_labels_are_those_of_one_by_one(law, blocks, a, share, first, last):

@@ -1,5 +1,7 @@
 """Kinds of attractors do not depend on the window, and motion that still drifts is not an attractor."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -37,17 +39,15 @@ def test_motion_locked_to_a_period_longer_than_any_run_is_not_periodic(law, a, k
     assert (np.diff(motion.exponent) <= 0.0).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("law", "a", "coupling", "blocks", "mean"),
-    quick_first(
-        [
-            ("linearized", 0.2, 1e-6, 2, None),
-            ("nonlinear", 0.3, 1e-5, 2, 0.284064),
-            ("nonlinear", 0.3, 1e-4, 2, 0.284029),
-            ("nonlinear", 0.3, 1e-5, 3, None),
-        ],
-        1,
-    ),
+    [
+        ("linearized", 0.2, 1e-6, 2, None),
+        ("nonlinear", 0.3, 1e-5, 2, 0.284064),
+        ("nonlinear", 0.3, 1e-4, 2, 0.284029),
+        ("nonlinear", 0.3, 1e-5, 3, None),
+    ],
 )
 def test_motion_that_still_drifts_is_not_an_attractor(law, a, coupling, blocks, mean):
     """Blocks on weak springs reach antiphase in a time of about 1/coupling, or are undetermined."""
@@ -67,6 +67,7 @@ def test_a_state_on_an_unstable_orbit_reaches_the_chaos_around_it():
     assert labels.tolist() in ([0], [1])
 
 
+@pytest.mark.slow
 def test_chaos_with_end_blocks_that_move_as_one_is_a_kind_of_its_own():
     strong = Model(Chain(3, coupling=8.0, pulling=(1.0, 4.0, 1.0)), law_of("nonlinear", 1.0), 0.5)
     run = simulate(strong, initial="minus", transient=3000.0, window=3000.0)
@@ -77,3 +78,29 @@ def test_chaos_with_end_blocks_that_move_as_one_is_a_kind_of_its_own():
     assert (labels == 0).all()
     assert np.isfinite(attractor.radius)
     assert SEARCH.resolution > attractor.motion.mean_distance
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("law", ["linearized", "nonlinear"])
+@pytest.mark.parametrize(
+    ("chain", "a", "settings"),
+    [
+        (Chain(5), 0.02, SearchSettings(samples=4, transient=1000, window=1000, time_limit=5000, perturbations=4)),
+        (Chain(3, coupling=1.5), 0.115, SearchSettings(samples=4, transient=1000, window=1000)),
+    ],
+)
+def test_synchrony_on_a_torus_is_synchrony(chain, a, settings, law):
+    """Runs and attractors have one kind, whether the torus is locked or not, and whatever the period."""
+    model = Model(chain, law_of(law, a))
+    attractors, _ = find_attractors(model, settings)
+    (synchrony,) = [item for item in attractors if item.symmetry == Symmetry.SYNCHRONIZED]
+    assert synchrony.motion.kind == MotionKind.SYNCHRONIZED
+    assert not synchrony.motion.period <= 400.0
+    # A state off the symmetric subspace comes back; its exponents are those of a torus, or nearly.
+    state = synchrony.motion.state()
+    generator = np.random.default_rng(1)
+    away = replace(state, position=state.position + 1e-4 * generator.uniform(-1.0, 1.0, chain.blocks))
+    run = simulate(model, initial=away, transient=4000.0, window=7000.0)
+    assert run.mean_distance < 1e-6
+    assert run.kind == MotionKind.SYNCHRONIZED
+    assert abs(run.lyapunov_exponent[1]) < 1e-3

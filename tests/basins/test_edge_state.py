@@ -73,6 +73,7 @@ def test_the_edge_state_between_mirror_images_is_the_synchronized_orbit(between_
     assert edge.mean_distance == pytest.approx(0.0, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_attractors_are_searched_for_if_none_are_given(between_mirror_images):
     edge, attractors = between_mirror_images
     states = [item.motion.state() for item in attractors if item.symmetry == Symmetry.ASYMMETRIC]
@@ -227,6 +228,7 @@ def test_a_chaotic_saddle(chaotic):
     assert not edge.has_crossing
 
 
+@pytest.mark.slow
 def test_the_lifetime_is_that_of_displaced_states(chaotic):
     """A fraction exp(−τ/lifetime) of states displaced uniformly in all directions, within 1e-4, remains after τ."""
     edge, attractors = chaotic

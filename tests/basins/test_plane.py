@@ -75,6 +75,7 @@ def check_run(table, state, branch, **conventions):
     assert run.mean_distance == pytest.approx(mean, abs=2e-4), (state, conventions)
 
 
+@pytest.mark.slow
 def test_runs_end_on_the_branches_of_their_pixels(table, basin_maps):
     """Every pixel of the diagonal, and the plane's axes: the first index is U_N(0)."""
     for k in range(0, 16, 3):

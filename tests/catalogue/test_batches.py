@@ -133,6 +133,7 @@ def check_scatter(catalogues, slope_range):
     return error / poisson
 
 
+@pytest.mark.slow
 def test_the_error_is_the_scatter_of_independent_runs(monkeypatch):
     monkeypatch.setattr(slope, "BOOTSTRAP_SIZE", 1)
     assert check_scatter(starts(20, 3500.0, 24), (-4.0, 0.0)) > 1.5

@@ -80,6 +80,7 @@ def test_the_scatter_and_p_of_events_in_bursts(monkeypatch):
     assert np.mean([fit.p_value < 0.05 for fit in independent]) > 0.3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("high", [4.0, np.inf])
 def test_independent_events_have_the_scatter_of_the_fisher_information(high, monkeypatch):
     monkeypatch.setattr(slope, "BOOTSTRAP_SIZE", 1)
@@ -145,6 +146,7 @@ def test_rounded_magnitudes_require_a_range_of_whole_bins(width):
     assert fit_slope(rounded, -2.0 + 1e-9 - width, 2.0).b < 0.81 * (1.0 - 0.4 * width)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width", [0.1, 0.5])
 @pytest.mark.parametrize("last", [2.0, 10.0])
 def test_the_bias_by_rounding_is_that_of_the_page(width, last):

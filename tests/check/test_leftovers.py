@@ -1,6 +1,7 @@
-"""`bk prune`: what is left over of earlier runs is deleted, and nothing else, by the true record alone."""
+"""What is left over of earlier configs: `bk check` lists it with the `rm` to copy, and nothing that a user has made."""
 
 import json
+import shlex
 import shutil
 from pathlib import Path
 
@@ -14,24 +15,29 @@ from burridge_knopoff.provenance.record import write_study_record
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.recorded import recorded_study
 from tests.check.conftest import change_record
-from tests.check.damages import POINT
-from tests.refused import refuses
 from tests.workflow.conftest import TINY
 
-#: Of another state, law, a or number of blocks than those of the study, where none is computed, or of earlier versions.
-LEFT_OVER = """
-points/linearized/wave/a0.0500.nc points/other/minus/a0.0500.nc points/linearized/minus/a0.0600.nc
-points/linearized/minus/a0.0500_v0.2000.nc chunks/3.done logs/chunk/3.log benchmarks/chunk/3.tsv
-solvers/rk4/linearized/minus/a0.0500.nc solvers/map/nonlinear/minus/a0.0800.nc
-logs/simulate/linearized/wave/a0.0500.log benchmarks/simulate/linearized/wave/a0.0500.tsv
-logs/simulate_solver/rk4/other/minus/a0.0800.log
-SHA256SUMS figures/orbits.png.corrupt summary/agreement.csv.corrupt report.html.corrupt
-"""
-#: Of the study, or of a name that no run writes.
-NOT_LEFT_OVER = """
-figures/mine.png summary/other.nc points/notes.txt points/linearized/minus/a0.0500_copy.nc chunks/mine.done
-chains/blocks10.nc summary/chains.nc figures/chains.png logs/simulate/mine.log logs/mine.log benchmarks/mine.tsv
-notes.corrupt figures/mine.png.corrupt summary/runs.nc.corrupt copy/SHA256SUMS
+#: Copies by a user: {copy: file of the study}, all with names that the workflow would give to other results.
+COPIES = {
+    "attractors/nonlinear_old.nc": "attractors/nonlinear.nc",
+    "attractors/linearized_old.nc": "attractors/linearized.nc",
+    "figures/motion_minus_v2.png": "figures/motion_minus.png",
+    "figures/motion_minus_v2.pdf": "figures/motion_minus.pdf",
+    "points/mylaw/minus/a0.0500.nc": "points/linearized/minus/a0.0500.nc",
+    "points/linearized/wave/a0.0500.nc": "points/linearized/minus/a0.0500.nc",
+    "points/linearized/minus/a0.0600.nc": "points/linearized/minus/a0.0500.nc",
+    "points/linearized/minus/a0.0500_v0.2000.nc": "points/linearized/minus/a0.0500.nc",
+    "solvers/euler/linearized/wave/a0.0500.nc": "solvers/rk4/linearized/minus/a0.2000.nc",
+    "basins/linearized/a0.0600/tile0.nc": "basins/linearized/a0.0800/tile0.nc",
+    "bifurcations/mylaw.nc": "bifurcations/linearized.nc",
+    "copy/summary/runs.nc": "summary/runs.nc",
+    "summary/proof.json": "summary/claims.json",
+}
+#: Of a user, or damaged, under names of the workflow.
+EMPTY = """
+points/other/minus/a0.0500.nc chunks/3.done logs/chunk/3.log benchmarks/chunk/3.tsv SHA256SUMS
+figures/orbits.png.corrupt figures/mine.png summary/other.nc notes/diary.txt logs/mine.log
+figures/motion_wave.pdf chains/blocks12.nc
 """
 #: Of stages that are left out.
 OF_STAGES = {
@@ -53,13 +59,35 @@ def record(results, config, file="study.yaml"):
 
 
 def files_and_logs(results):
-    """Return the names of all files of the recorded study except points, and of their logs."""
+    """Return the names of all files of the recorded study except points, and of their logs and benchmarks."""
     files = study_files(recorded_study(results)[1])
-    return {*files, *(file.log for file in files.values())}
+    logs = {file.log for file in files.values()}
+    return {*files, *logs, *(log.replace("logs", "benchmarks").replace(".log", ".tsv") for log in logs)}
 
 
-def test_what_is_not_of_the_study_is_pruned_and_nothing_else(results, capsys):
-    """By their names. They are not checked or opened."""
+def deleted(results, capsys):
+    """Return the names in the `rm` that `bk check` prints, none if it prints none."""
+    main(["check", str(results)])
+    *_, last = capsys.readouterr().out.splitlines()
+    _, says_so, command = last.partition("; delete: ")
+    if not says_so:
+        return set()
+    rm, *paths = shlex.split(command)
+    assert rm == "rm"
+    assert last.startswith(f"left over, with logs and benchmarks: {len(paths)} files; ")
+    return {Path(path).relative_to(results).as_posix() for path in paths}
+
+
+def test_what_is_not_of_the_study_is_left_over_and_no_copy(results, capsys):
+    """Copies, links, files of other names and damaged files stay."""
+    for name, source in COPIES.items():
+        (results / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(results / source, results / name)
+    for name in EMPTY.split():
+        (results / name).parent.mkdir(parents=True, exist_ok=True)
+        (results / name).write_text("")
+    (results / "points/linked").symlink_to("linearized")
+    (results / "points/linearized/minus/a0.0700.nc").symlink_to("a0.0500.nc")
     config = {**yaml.safe_load(TINY), "without": ["attractors", "proof"]}
     Path("study.yaml").write_text(json.dumps(config))
     # The next run has not made them again yet.
@@ -67,43 +95,39 @@ def test_what_is_not_of_the_study_is_pruned_and_nothing_else(results, capsys):
         (results / name).unlink()
     before, whole = files_and_logs(results), files_in(results)
     record(results, config)
-    gone = before - files_and_logs(results)
-    gone |= {name.replace("logs", "benchmarks").replace(".log", ".tsv") for name in gone if name.startswith("logs/")}
-    assert OF_STAGES <= gone <= whole
-    for name in LEFT_OVER.split():
-        (results / name).parent.mkdir(parents=True, exist_ok=True)
-        (results / name).write_text("")
-    gone |= {*LEFT_OVER.split()}
-    assert main(["check", str(results)]) == 0
-    *lines, totals, note = capsys.readouterr().out.splitlines()
-    paths = [name for name in gone if not name.startswith(("logs", "benchmarks"))]
-    assert sorted(lines) == sorted(f"leftover {results / name}: not part of this study" for name in paths)
-    assert totals.endswith(": 0 missing, 0 corrupt, 0 outdated, 0 failed")
-    assert note == f"left over, with logs and benchmarks: {len(gone)} files; delete: bk prune {results}"
+    gone = (before - files_and_logs(results)) & whole
+    assert gone >= OF_STAGES
+    assert deleted(results, capsys) == gone
     assert not {"attractors", "proof"} & {*open_study(results)["summary"].children}
-    kept = NOT_LEFT_OVER.split()
-    for name in (*kept, "../outside/minus/a0.0500.nc"):
-        (results / name).parent.mkdir(parents=True, exist_ok=True)
-        (results / name).write_text("")
-    (results / "points/linked").symlink_to("../../outside")
-    (results / "points/linearized/minus/a0.0700.nc").symlink_to("a0.0500.nc")
-    for arguments, left in ((["--dry-run"], gone), ([], set())):
-        assert main(["prune", *arguments, str(results)]) == 0
-        *listed, last = capsys.readouterr().out.splitlines()
-        assert sorted(listed) == sorted(str(results / name) for name in gone)
-        assert last == f"{results}: {len(gone)} files {'would be ' * bool(arguments)}deleted"
-        assert files_in(results) == (whole - gone) | {*kept} | left
-    assert not (results / "points/linearized/wave").exists()
-    assert (results / "../outside/minus/a0.0500.nc").exists()
-    assert main(["prune", str(results)]) == 0
-    assert capsys.readouterr().out == f"{results}: 0 files deleted\n"
+    for name in gone:
+        (results / name).unlink()
+    assert deleted(results, capsys) == set()
+    assert {*COPIES, *EMPTY.split()} <= files_in(results)
+
+
+@pytest.mark.parametrize(
+    ("change", "place"),
+    [
+        ({"initial": {"minus": {}}}, "/plus"),
+        ({"laws": {"linearized": {}}}, "nonlinear"),
+        ({"a": [0.05, 0.08, 0.2]}, "0.2200"),
+    ],
+)
+def test_runs_that_the_study_no_longer_has_are_left_over(results, change, place):
+    """By their own record: of a state, a law, a value of a."""
+    from burridge_knopoff.check.leftovers import leftovers
+
+    config = {**yaml.safe_load(TINY), **change}
+    names = {path.relative_to(results).as_posix() for path in leftovers(results, load_study(config, "study.yaml"))}
+    points = {name for name in files_in(results) if name.startswith(("points/", "solvers/")) and place in name}
+    assert {name for name in names if name.startswith(("points/", "solvers/"))} == points
 
 
 #: Files of other people, which a record may name.
 OF_OTHERS = ["notes/diary.txt", "summary/mine.csv", "figures/mine.png", "copy/summary/runs.nc", "logs/mine.log"]
 
 
-def test_a_record_that_names_other_files_deletes_none(results, capsys):
+def test_a_record_that_names_other_files_names_none_to_delete(results, capsys):
     """A folder from elsewhere may have any record; those of earlier versions have lists of files."""
     for name in OF_OTHERS:
         (results / name).parent.mkdir(parents=True, exist_ok=True)
@@ -114,46 +138,23 @@ def test_a_record_that_names_other_files_deletes_none(results, capsys):
         record["files"] = {"summary/other.nc": "notes/diary.log", "notes/diary.log": "notes/diary.txt"}
 
     change_record(results, name_others)
-    before = files_in(results)
-    assert main(["prune", str(results)]) == 0
-    assert capsys.readouterr().out == f"{results}: 0 files deleted\n"
-    assert files_in(results) == before
-    assert Path("study.yaml").exists()
+    assert deleted(results, capsys) == set()
 
 
-#: {case: (changes of the config, words of the refusal)}
+#: Changes of the record of a study that make it that of another.
 FOREIGN = {
-    "another name": ({"study": "other"}, ["study.json", "other"]),
-    "other runs": ({"transient": 30}, ["{point}: ", "transient: 100.0", "30.0"]),
-    "other values": ({"a": [0.06, 0.07], "solvers": {"a": [0.06]}, "phases": {"a": [0.06]}}, ["{other}: "]),
-    "fewer values": ({"a": [0.05, 0.08, 0.2]}, ["{summary}: ", "a: [0.05, 0.08, "]),
+    "other runs": {"transient": 30},
+    "other values": {"a": [0.06, 0.07], "solvers": {"a": [0.06]}, "phases": {"a": [0.06]}},
+    "fewer values": {"a": [0.05, 0.08, 0.2]},
 }
 
 
 @pytest.mark.parametrize("case", FOREIGN)
-def test_by_the_record_of_another_study_nothing_is_pruned(results, capsys, case):
+def test_by_the_record_of_another_study_nothing_is_to_be_deleted(results, capsys, case):
     """By such a record all files may be left over. Its config file may exist as well."""
-    change, words = FOREIGN[case]
-    config = {**yaml.safe_load(TINY), **change}
+    config = {**yaml.safe_load(TINY), **FOREIGN[case]}
     record(results, config, "foreign.yaml")
-    points = results / "points/linearized/minus"
-    paths = {"point": points / "a0.0500.nc", "other": points / "a0.0600.nc"}
-    paths["summary"] = results / "summary/runs.nc"
-    before = files_in(results)
-    for arguments in ([], ["--dry-run"]):
-        assert main(["prune", *arguments, str(results)]) == 2
-        said = capsys.readouterr()
-        assert said.out == ""
-        assert refuses(said.err, str(results), *(word.format(**paths) for word in words), "snakemake")
+    for _ in range(2):
+        assert main(["check", str(results)]) == 1
+        assert "delete: " not in capsys.readouterr().out
         Path("foreign.yaml").write_text(json.dumps(config))
-    assert files_in(results) == before
-
-
-def test_no_folder_is_pruned_if_another_one_is_refused(results):
-    left, other = (results / POINT).with_name("a0.0600.nc"), results.with_name("other")
-    shutil.copy(results / POINT, left)
-    shutil.copytree(results, other)
-    assert main(["prune", str(results), str(other)]) == 2
-    assert left.exists()
-    assert main(["prune", str(results)]) == 0
-    assert not left.exists()

@@ -85,10 +85,8 @@ def test_a_folder_that_is_no_study_is_refused_in_a_line(tmp_path, capsys, conten
 def test_a_study_with_a_key_that_this_version_lacks_is_refused_in_a_line(results, capsys, place, change, words):
     change_record(results, lambda record: reduce(getitem, place.split(), record["config"]).update(change))
     path = str(results / "study.json")
-    for command in ("check", "prune"):
-        assert main([command, str(results)]) == 2
-        said = capsys.readouterr().err
-        assert refuses(said, path, words, "snakemake")
+    assert main(["check", str(results)]) == 2
+    assert refuses(capsys.readouterr().err, path, words, "snakemake")
     with refused(path, words):
         open_study(results)
 
@@ -107,7 +105,6 @@ def test_a_study_of_a_version_without_a_key_is_opened(results, key):
     params.pop(key, None)
     forge(path, params=json.dumps(params))
     assert main(["check", str(results)]) == 0
-    assert main(["prune", str(results)]) == 0
     study = open_study(results)
     assert study["summary/mean_distance"].sizes
     assert study.config["contact"] == "one_sided"

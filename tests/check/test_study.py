@@ -23,6 +23,7 @@ from tests.check.conftest import change_record
 from tests.check.damages import DAMAGES, POINT, cut, rewrite
 from tests.forged import forge
 from tests.refused import refused, refuses
+from tests.workflow.conftest import snakemake_of_checkout
 
 
 def findings_of(results):
@@ -52,7 +53,7 @@ def test_a_bad_point_is_refused_and_listed_with_the_command_that_remakes_it(resu
     assert words in reason
     assert reason.isprintable()
     assert kind == {"is missing": "missing"}.get(words, "outdated" if "another" in words else "corrupt")
-    command = f"snakemake -c2 --configfile study.yaml -R {results / POINT}"
+    command = f"{snakemake_of_checkout(Path.cwd())} --configfile study.yaml -R {results / POINT}"
     assert str(caught.value) == f"{results / POINT}: {reason}; remake it: {command}"
     assert main(["check", str(results)]) == 1
     line, totals, remake = capsys.readouterr().out.splitlines()
@@ -231,7 +232,9 @@ def test_a_study_is_checked_from_anywhere(results, capsys, monkeypatch, tmp_path
     assert main(["check", str(moved)]) == 0
     capsys.readouterr()
     emptied(moved / POINT)
-    command = f"cd {shlex.quote(str(root))} && snakemake -c2 --configfile study.yaml -R {results / POINT}"
+    command = (
+        f"cd {shlex.quote(str(root))} && {snakemake_of_checkout(root)} --configfile study.yaml -R {results / POINT}"
+    )
     assert main(["check", str(moved)]) == 1
     assert capsys.readouterr().out.splitlines()[-1] == f"remake: {command}"
     assert main(["show", f"my study/{results}/{POINT}"]) == 2
@@ -274,10 +277,13 @@ def test_a_run_in_progress_is_not_to_be_repeated(results, capsys):
         (None, "does not exist"),
     ],
 )
-def test_a_changed_config_is_named_and_nothing_is_pruned_by_it(results, capsys, change, words):
+def test_a_changed_config_is_named_and_nothing_is_to_be_deleted_by_it(results, capsys, change, words):
     """Without its file, the config of the last run counts."""
-    config, left = Path("study.yaml"), (results / POINT).with_name("a0.0600.nc")
-    shutil.copy(results / POINT, left)
+    config = Path("study.yaml")
+    change_record(results, lambda record: record["config"]["without"].append("proof"))
+    # The next run has not made them again yet.
+    for name in ("report.html", "summary/claims.json", "logs/report.log", "logs/claims.log"):
+        (results / name).unlink()
     if change:
         config.write_text(change(config.read_text()))
     else:
@@ -289,11 +295,8 @@ def test_a_changed_config_is_named_and_nothing_is_pruned_by_it(results, capsys, 
     named = re.findall(
         r"^(outdated|note) +study\.yaml: (.*); the config of the last run is checked$", said, re.MULTILINE
     )
+    assert ("; delete: rm " in said) is not is_stale
     assert [kind for kind, _ in named] == ["outdated"] * is_stale + ["note"] * (change is None)
     assert all(reason.startswith(words) for _, reason in named)
     assert main(["check", "--paths", str(results)]) == is_stale
     assert capsys.readouterr().out == ""
-    assert main(["prune", str(results)]) == 2 * is_stale
-    assert left.exists() == is_stale
-    error = f"bk prune: {results}: study.yaml {named[0][1]}: run snakemake first\n" if is_stale else ""
-    assert capsys.readouterr().err == error

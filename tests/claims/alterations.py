@@ -150,6 +150,31 @@ def slips(power: float) -> Alteration:
     return set_friction
 
 
+def results_apart(fixed_v: float, fixed_av: float) -> Alteration:
+    """Let the difference of ⟨J⟩ on the antiphase orbit fall with these powers of a."""
+
+    def set_differences(world: Summaries) -> None:
+        orbits = world["orbits"]
+        for name, power in (("", fixed_v), ("_fixed_av", fixed_av)):
+            orbits[f"antiphase_difference{name}"].values[1:] = -0.01 * orbits["a"].values[1:] ** power
+
+    return set_differences
+
+
+def third_exponent(value: float, error: float, a: Callable[[np.ndarray], np.ndarray] = np.isfinite) -> Alteration:
+    """Give detuned motion a third exponent with this error, at the values of a that satisfy a condition."""
+
+    def change(world: Summaries) -> None:
+        rotation = world["rotation"]
+        for name, number in (("detuned_exponent", value), ("detuned_exponent_error", error)):
+            other = rotation[name].copy(deep=True)
+            other.loc[{"exponent": 2} if "exponent" in other.coords else {}] = number
+            other.values[..., :2] = rotation[name].values[..., :2]
+            rotation[name] = rotation[name].where(~a(rotation["a"]), other)
+
+    return change
+
+
 def means_apart(a: object, **where: object) -> Alteration:
     return alter("agreement", "difference", 0.1, a=a, **where)
 

@@ -36,9 +36,11 @@ from tests.claims.alterations import (
     parted,
     reached,
     repeating,
+    results_apart,
     slips,
     solutions,
     synchronized,
+    third_exponent,
 )
 
 #: The paper's contact with the other start, and the other contact, which does not decide.
@@ -55,7 +57,7 @@ FEW_CLOUDS = both(
     alter("attractors", "kind", PERIODIC, attractor=1, a=ONE_OF_MANY),
 )
 #: Claims that follow from the springs and from F'(v) alone.
-THEORY = ("equilibrium_unstable", "growth", "exponentials", "stable_where_friction_grows")
+THEORY = ("equilibrium_unstable", "oscillations_grow", "growth_rate", "exponentials", "stable_where_friction_grows")
 CHAOS_OF_RUNS = alter("agreement", "kind", CHAOTIC, law="nonlinear")
 CASES: list[tuple[str, str, Alteration]] = [
     ("minus_synchronizes", FAILS, both(synchronized(0, initial="minus"), reached(1, initial="minus"))),
@@ -125,7 +127,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("minus_distance_vanishes", FAILS, alter("mean_distance", "settling_time", np.nan)),
     ("minus_distance_vanishes", NOT_TESTABLE, alter("mean_distance", "status", 1)),
     ("minus_distance_vanishes", NOT_TESTABLE, alter("mean_distance", "distance_rounding", 1e-6)),
-    ("minus_distance_vanishes", LOOSELY, alter("mean_distance", "settling_time", 4500.0)),
+    ("minus_distance_vanishes", FAILS, alter("mean_distance", "settling_time", 4500.0)),
     ("history_decides", HOLDS, alter("attractors", "basin_count", 0, attractor=[1, 2])),
     ("history_decides", FAILS, both(alter("attractors", "branch", 0), reached(0))),
     # An attractor that no state reaches does not count.
@@ -164,9 +166,9 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("phases_decide", FAILS, alter("phases", "velocity_correlation", 1.0, phase_difference=180.0)),
     # Phases that are neither close nor opposite.
     ("phases_decide", HOLDS, alter("phases", "velocity_correlation", 1.0, phase_difference=150.0)),
-    # At amplitudes at which blocks stop during an oscillation.
-    ("phases_decide", LOOSELY, alter("phases", "branch", 2, phase_difference=30.0, amplitude=0.2)),
-    ("phases_decide", LOOSELY, alter("phases", "velocity_correlation", 1.0, phase_difference=180.0, amplitude=0.2)),
+    # At amplitudes at which blocks stop during an oscillation, of which the paper may or may not speak.
+    ("phases_decide", READING, alter("phases", "branch", 2, phase_difference=30.0, amplitude=0.2)),
+    ("phases_decide", READING, alter("phases", "velocity_correlation", 1.0, phase_difference=180.0, amplitude=0.2)),
     ("phases_decide", LOOSELY, alter("phases", "branch", 2, phase_difference=30.0, a=ONE_OF_MANY)),
     # Two of eighty states do not contradict the claim, twenty do.
     ("phases_decide", HOLDS, alter("phases", "branch", 2, phase_difference=[15.0, 30.0], state=1)),
@@ -219,9 +221,16 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("branch_locked", HOLDS, parted(detuning=0.8)),
     ("branch_locked", HOLDS, parted(detuning=0.1)),
     ("branch_locked", LOOSELY, parted(a=lambda a: (a > 0.03) & (a < 0.036))),
-    ("branch_locked", UNDECIDED, parted(a=lambda a: (a > 0.03) & (a < 0.05))),
+    ("branch_locked", UNDECIDED, parted(a=lambda a: (a > 0.03) & (a < 0.042))),
+    ("branch_locked", FAILS, parted(a=lambda a: (a > 0.03) & (a < 0.047))),
     # Blocks that only springs move keep one frequency too, but then three exponents are 0.
-    ("branch_locked", FAILS, alter("rotation", "detuned_exponent", -0.001)),
+    ("branch_locked", FAILS, third_exponent(-1e-4, 1.6e-4)),
+    # An exponent that its error does not tell from 0 shows neither a free phase nor a stable one.
+    ("branch_locked", NOT_TESTABLE, third_exponent(-8.5e-4, 4.1e-4)),
+    ("branch_locked", HOLDS, third_exponent(-8.5e-4, 4.1e-4, lambda a: (a > 0.03) & (a < 0.034))),
+    ("branch_locked", HOLDS, third_exponent(-8.5e-4, 2.8e-4)),
+    # Where the end blocks have two frequencies it does not matter.
+    ("branch_locked", FAILS, both(parted(), third_exponent(-8.5e-4, 4.1e-4))),
     # If they move in one mode they have one frequency, but are not locked.
     ("branch_locked", READING, alter("rotation", "detuned_end_ratio", 0.55)),
     ("branch_locked", READING, alter("rotation", "detuned_end_ratio", 0.55, branch=2, law="linearized")),
@@ -254,7 +263,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ),
     (
         "locking_precedes_chaos",
-        FAILS,
+        READING,
         both(
             alter("bifurcations", "kind", BifurcationKind.UNDETERMINED, bifurcation=[13, 14]),
             alter("bifurcations", "motion_before", QUASIPERIODIC, bifurcation=[14, 15, 16, 17, 18]),
@@ -281,6 +290,9 @@ CASES: list[tuple[str, str, Alteration]] = [
     # A branch that ends on another one is an onset of chaos only if the other was not chaotic before.
     ("locking_precedes_chaos", NOT_TESTABLE, both(alter("bifurcations", "change", Change.END), chaos_from(0.04))),
     ("locking_precedes_chaos", HOLDS, both(alter("bifurcations", "change", Change.END), chaos_from(0.3))),
+    # Only the first onset is after a torus, or only it is not.
+    ("locking_precedes_chaos", READING, chaos_from(0.052)),
+    ("locking_precedes_chaos", READING, alter("bifurcations", "motion_before", QUASIPERIODIC, bifurcation=12)),
     # Locking is that of a torus: periodic windows between chaos, and orbits that were never on a torus, show none.
     ("locking_precedes_chaos", READING, chaos_from(0.04)),
     ("locking_precedes_chaos", READING, alter("refined", "kind", PERIODIC)),
@@ -342,11 +354,9 @@ CASES: list[tuple[str, str, Alteration]] = [
         FAILS,
         both(everywhere("agreement", "kind", PERIODIC), alter("attractors", "section_count", 1)),
     ),
-    # Motion that repeats after enough section points for a cloud, and after one fewer.
-    ("plus_aperiodic", LOOSELY, repeating(9)),
-    ("plus_aperiodic", CONVENTION, repeating(8)),
-    ("plus_aperiodic", LOOSELY, both(repeating(9), attracting(9))),
-    ("plus_aperiodic", FAILS, both(repeating(8), attracting(8))),
+    # Motion that repeats is periodic, also after many section points.
+    ("plus_aperiodic", CONVENTION, repeating(48)),
+    ("plus_aperiodic", FAILS, both(repeating(48), attracting(48))),
     ("plus_aperiodic", CONVENTION, reached(0, initial="plus", **OTHER)),
     # An unknown attractor, or one of undetermined kind, could change the verdict.
     ("plus_aperiodic", NOT_TESTABLE, reached(-1, initial="plus", **OTHER)),
@@ -382,7 +392,8 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("sticks_unavoidable", FAILS, alter("equilibrium", "eigenvalue", -0.1, part="real", mode=6)),
     ("sticks_unavoidable", LOOSELY, alter("equilibrium", "eigenvalue", 0.0, part="real", mode=6, a=ONE_OF_MANY)),
     ("sticks_unavoidable", NOT_TESTABLE, alter("attractors", "branch", -1)),
-    ("antiphase", LOOSELY, alter("stick_slip", "velocity_correlation", -0.2)),
+    ("antiphase", LOOSELY, alter("stick_slip", "velocity_correlation", -0.51)),
+    ("antiphase", CONVENTION, alter("stick_slip", "velocity_correlation", -0.49)),
     ("antiphase", CONVENTION, alter("stick_slip", "velocity_correlation", 0.9)),
     ("antiphase", FAILS, everywhere("stick_slip", "velocity_correlation", 0.9)),
     ("antiphase", CONVENTION, reached(0, initial="plus", **OTHER)),
@@ -458,11 +469,12 @@ CASES: list[tuple[str, str, Alteration]] = [
     # Theory needs a single value of a at which friction falls with velocity.
     *((name, HOLDS, few("equilibrium", a=2)) for name in THEORY),
     *((name, NOT_TESTABLE, few("equilibrium", a=1)) for name in THEORY),
-    # The oscillations grow, but not at the rate that the formula states.
-    ("growth", READING, growing(0.5)),
-    ("growth", LOOSELY, growing(0.92)),
-    ("growth", FAILS, growing(-1.0)),
-    ("growth", FAILS, growing(0.0)),
+    # Oscillations may grow, but not at the rate that the formula states.
+    ("oscillations_grow", HOLDS, growing(0.5)),
+    ("oscillations_grow", FAILS, growing(-1.0)),
+    ("oscillations_grow", FAILS, growing(0.0)),
+    ("growth_rate", FAILS, growing(0.5)),
+    ("growth_rate", LOOSELY, growing(0.92)),
     ("minus_near_equilibrium", FAILS, alter("equilibrium", "equilibrium_position", 0.5, block=1)),
     ("minus_near_equilibrium", LOOSELY, alter("equilibrium", "equilibrium_position", -0.7, block=1)),
     ("minus_near_equilibrium", LOOSELY, alter("stick_slip", "position_amplitude", 0.1, initial="minus")),
@@ -482,14 +494,19 @@ CASES: list[tuple[str, str, Alteration]] = [
     # The transient does not count.
     ("linearization_justified", HOLDS, alter("mean_distance", "least_friction", 0.7, a=ONE_OF_MANY)),
     ("linearization_justified", NOT_TESTABLE, alter("mean_distance", "status", 1, initial="minus")),
-    # The power at a fixed velocity V of the driver, and at a fixed v.
-    ("springs_and_masses_help", READING, slips(0.0)),
-    ("springs_and_masses_help", FAILS, slips(-1.0)),
-    ("springs_and_masses_help", LOOSELY, slips(0.6)),
-    ("springs_and_masses_help", HOLDS, slips(0.8)),
-    ("low_friction_helps", READING, slips(0.0)),
-    ("low_friction_helps", FAILS, slips(-1.0)),
-    ("low_friction_helps", HOLDS, slips(0.8)),
+    # The powers of the difference of ⟨J⟩ at a fixed v, and at a fixed velocity V of the driver.
+    ("springs_and_masses_help", READING, results_apart(2.0, 0.0)),
+    ("springs_and_masses_help", READING, results_apart(0.0, 1.0)),
+    ("springs_and_masses_help", FAILS, results_apart(0.4, -1.0)),
+    ("springs_and_masses_help", LOOSELY, results_apart(2.0, 0.7)),
+    ("springs_and_masses_help", HOLDS, results_apart(0.8, 3.0)),
+    ("springs_and_masses_help", NOT_TESTABLE, alter("orbits", "antiphase_difference", np.nan, a=lambda a: a < 0.05)),
+    ("springs_and_masses_help", HOLDS, alter("orbits", "antiphase_difference", np.nan, a=ONE_OF_MANY)),
+    # The forces may differ as much as before.
+    ("springs_and_masses_help", HOLDS, slips(0.0)),
+    ("low_friction_helps", READING, results_apart(2.0, 0.0)),
+    ("low_friction_helps", FAILS, results_apart(0.4, -1.0)),
+    ("low_friction_helps", HOLDS, slips(0.0)),
     ("laws_agree", FAILS, means_apart(lambda a: a > 0.055)),
     # Where ⟨J⟩ is small, a difference that no figure shows exceeds the same fraction of ⟨J⟩.
     ("laws_agree", HOLDS, alter("agreement", "difference", 0.01, initial="plus")),
@@ -525,7 +542,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     (
         "laws_agree_in_kind",
         UNDECIDED,
-        alter("agreement", "kind", PERIODIC, initial="plus", law="nonlinear", a=lambda a: (a > 0.08) & (a < 0.096)),
+        alter("agreement", "kind", PERIODIC, initial="plus", law="nonlinear", a=lambda a: (a > 0.08) & (a < 0.092)),
     ),
     # Attractors that exist under one law only, or on which the motion differs; a motionless block; another result of a
     # state.
@@ -600,8 +617,12 @@ CASES: list[tuple[str, str, Alteration]] = [
     (
         "solutions_agree",
         HOLDS,
-        alter("agreement", "kind", PERIODIC, law="nonlinear", initial="plus"),
+        alter("agreement", "kind", PERIODIC, law="nonlinear", initial="plus", a=lambda a: a < 0.1),
     ),
+    # Above 0.1 the laws may lead to other results; the abstract's sentence may be about them as well.
+    ("solutions_agree", READING, alter("agreement", "kind", PERIODIC, law="nonlinear", a=lambda a: a > 0.1)),
+    ("solutions_agree", LOOSELY, alter("agreement", "kind", PERIODIC, law="nonlinear", a=[0.2, 0.21])),
+    ("solutions_agree", NOT_TESTABLE, alter("agreement", "kind", UNDETERMINED, a=lambda a: a > 0.12)),
     # The laws are compared at every a: one of twenty-two does not contradict the claim.
     ("solutions_agree", LOOSELY, alter("agreement", "kind", CHAOTIC, law="nonlinear", a=ONE_OF_MANY)),
     # If solvers differ at one of six points, these are too few to decide.

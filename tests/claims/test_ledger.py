@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -55,12 +56,16 @@ def test_the_parameters_of_a_claim_are_those_of_its_function() -> None:
         fast.
 
         Not slow.
+
+        Holds within
+        {tolerance:g}, above -1.
         """
         return Verdict(HOLDS, f"{evidence.summary('agreement').sizes['a']} values, {at:g}, {tolerance:g}.")
 
     try:
         assert CLAIMS["speed"] is speed
         assert (speed.name, speed.topic, speed.statement) == ("speed", "test_ledger", "Blocks move fast.")
+        assert speed.rule == "Holds within 0.01, above −1."
         assert (speed.place, speed.figure, speed.reads) == ("Fig. 1", "orbits", ("agreement",))
         assert speed.depends_on == ("minus_periodic",)
         assert speed.parameters == {"at": 0.08, "tolerance": 0.01}
@@ -69,6 +74,16 @@ def test_the_parameters_of_a_claim_are_those_of_its_function() -> None:
         assert judge(speed, evidence(paper_world()), {"tolerance": 0.02, "at": 0.1}).reason == "64 values, 0.1, 0.02."
     finally:
         del CLAIMS["speed"]
+
+
+@pytest.mark.parametrize("claim", CLAIMS.values(), ids=CLAIMS)
+def test_a_claim_has_a_rule_that_names_its_choices(claim: Claim) -> None:
+    assert claim.rule.startswith("Holds")
+    for name in ("tolerance", "loose", "near", "points", "samples", "much", "level", "relative", "correlation"):
+        if name in claim.choices:
+            assert re.sub("^-", "−", f"{claim.parameters[name]:g}") in claim.rule
+    if "loose_share" in claim.parameters:
+        assert "nine in ten" in claim.rule
 
 
 @pytest.fixture(scope="module")
@@ -188,7 +203,7 @@ def test_markdown_has_a_row_and_a_section_for_each_claim() -> None:
     independent = sum(not claim.depends_on for claim in CLAIMS.values())
     assert 30 < independent < len(CLAIMS)
     assert text.startswith(
-        f"Of {independent} independent statements, {independent} hold; eleven more repeat these or follow from them."
+        f"Of {independent} independent statements, {independent} hold; twelve more repeat these or follow from them."
         "\n\nDepth of the search for attractors: 95 % intervals of basin fractions ±2 %, changes along a located "
         "within 0.0006,\nperiodic orbits up to a period of 500.\n\n| statement"
     )
@@ -201,6 +216,7 @@ def test_a_section_has_the_evidence_of_its_claim(content: dict) -> None:
         "statement": "A|B.",
         "verdict": "ambiguous",
         "reason": "Why.",
+        "rule": "Holds if so.",
         "changes": "here; not other_claim",
     }
     claim |= {"changing_choices": ["holds if c"], "depends_on": ["other_claim"]}
@@ -209,6 +225,7 @@ def test_a_section_has_the_evidence_of_its_claim(content: dict) -> None:
     assert lines[lines.index(f"#### {claim['name']}") + 1 :] == [
         f"*A|B.* ({claim['place']})",
         "**Ambiguous** (under the first reading: holds). Why.",
+        "Rule: holds if so.",
         "Exceptions and other cases:",
         "- here\n- not [other_claim](#other_claim)",
         "What would change the verdict:",

@@ -35,7 +35,7 @@ KINDS = {
 def changes(judge, evidence, parameters, verdict, reads=()):
     """Return the choices that would change the verdict of a claim with these parameters."""
     choices = {name: KINDS[name].__metadata__[0] for name in parameters if name in KINDS}
-    claim = Claim("name", "topic", "statement", "place", "figure", reads, judge, parameters, choices)
+    claim = Claim("name", "topic", "statement", "rule", "place", "figure", reads, judge, parameters, choices)
     return changing_choices(claim, judge, evidence, verdict)
 
 
@@ -53,7 +53,7 @@ def test_a_number_of_a_claim_is_a_choice_or_what_the_statement_says():
     given = {"at", "by", "claimed", "coefficients", "low", "high", "shown", "steps"}
     for claim in CLAIMS.values():
         for name in claim.parameters.keys() - claim.choices.keys() - given:
-            assert name in {"initial", "law", "laws", "a", "synchrony", "claims"}, f"{claim.name}: {name}"
+            assert name in {"initial", "law", "laws", "a", "above", "synchrony", "claims"}, f"{claim.name}: {name}"
         assert claim.choices.keys() <= claim.parameters.keys()
 
 

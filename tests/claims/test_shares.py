@@ -23,19 +23,30 @@ from burridge_knopoff.claims.verdict import (
     [
         (40, 40, HOLDS),
         (1, 1, HOLDS),
-        (36, 40, LOOSELY),
+        # All but one of the values, and exactly nine in ten.
+        (39, 40, LOOSELY),
         (9, 10, LOOSELY),
-        # 95 % intervals that reach nine of ten, and those that do not.
-        (7, 8, UNDECIDED),
-        (22, 26, UNDECIDED),
-        (32, 39, UNDECIDED),
-        (31, 39, FAILS),
-        (5, 8, FAILS),
+        (27, 30, LOOSELY),
+        (36, 40, LOOSELY),
+        # One value short of nine in ten, and two.
+        (35, 40, UNDECIDED),
+        (34, 40, FAILS),
+        (8, 10, UNDECIDED),
+        (7, 10, FAILS),
+        (35, 39, UNDECIDED),
+        (34, 39, FAILS),
+        (32, 39, FAILS),
+        (168, 199, FAILS),
+        # Few values: all but one, all but two, none.
+        (8, 9, UNDECIDED),
+        (7, 9, FAILS),
+        (1, 2, UNDECIDED),
         (0, 1, FAILS),
+        (0, 9, FAILS),
     ],
 )
 def test_one_rule_judges_all_shares(hits: int, count: int, expected: str) -> None:
-    """Too few values are not a reason for a statement to fail, whatever the claim."""
+    """A share is undecided only if one value more would reach nine in ten, however few the values are."""
     share = Share(hits, count)
     assert judge_share(share, 0.9) == expected
     texts = f"9 of 9 (one) and {share} (other)"

@@ -102,6 +102,8 @@ def _world() -> Summaries:
                 "critical_a_error": (("law",), 1e-9),
                 "transverse_multiplier": (("law", "a"), 0.96),
                 "period": (("law", "a"), 5.7),
+                "antiphase_difference": (("a",), -0.2 * A**2),
+                "antiphase_difference_fixed_av": (("a",), -0.02 * A),
             }
         ),
         "stick_slip": _dataset(
@@ -321,6 +323,7 @@ def _refined() -> xarray.Dataset:
         "in_grid": (slots[:2], np.isin(a, A).astype("i1")),
         "branch": (slots, np.where(there, 1, -1).astype("i2")),
         "kind": (slots, np.where(there, np.where(a > 0.1, CHAOTIC, QUASIPERIODIC)[..., None], -1).astype("i1")),
+        "period": (slots, np.full((*a.shape, 1), np.nan)),
     }
     depth = {"fraction_width": 0.02, "refine_resolution": 6e-4, "refine_longest_period": 500.0}
     return xarray.Dataset(data, {"law": list(LAWS)}, depth)
@@ -366,7 +369,9 @@ def _bifurcations() -> xarray.Dataset:
     # There `refined` has a torus, to which the orbit has locked.
     low = np.tile(A[A <= 0.1][-12:], 2)
     columns |= {"change": Change.CHANGE, "grid_low": low, "grid_high": low + 0.002, "a": low + 0.001}
+    columns |= {"turns": 0, "period": 34.3}
     values = {name: ("bifurcation", np.array(np.broadcast_to(value, 24))) for name, value in columns.items()}
+    values["multiplier_beyond"] = ("bifurcation", "part"), np.tile([0.3, 0.0], (24, 1))
     return xarray.Dataset(values, attrs={"laws": " ".join(LAWS)})
 
 

@@ -33,6 +33,7 @@ def folder(tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", [name for name in COMMANDS if name != "completion"])
 def test_the_examples_of_a_command_run(folder, command, monkeypatch, capsys):
     """In the order of the commands: what is shown has been made by those before."""

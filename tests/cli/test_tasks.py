@@ -100,6 +100,17 @@ def test_the_synchronized_orbit(capsys):
         assert printed.count(" stops\n") == printed.count(" starts\n") == 3
 
 
+def test_a_synchronized_orbit_that_repels_symmetric_perturbations(capsys):
+    """At coupling 1.5 synchronized motion of another period attracts: the transverse multiplier does not decide."""
+    for coupling, repels in ((1.5, True), (1.0, False)):
+        options = ["--law", "linearized", "--a", "0.2", "--coupling", str(coupling)]
+        printed = said(capsys, "orbit", *options)
+        model = Model(Chain(3, coupling=coupling), law_of("linearized", 0.2))
+        symmetric = multipliers(synchronized_orbit(model)).symmetry_preserving[0]
+        assert f"mirror-symmetric perturbations: {symmetric.real:.6g}" in printed
+        assert ("synchrony    the orbit repels mirror-symmetric perturbations" in printed) == repels
+
+
 def test_an_orbit_without_stops(capsys):
     law = ["--formula", "1 - a*u + b*u**3", "--number", "b=0.3", "--a", "0.5", "--v", "0.7"]
     printed = said(capsys, "orbit", *law, "--position=-0.5,-0.9", "--velocity", "0.5,0.7")

@@ -7,6 +7,7 @@ from matplotlib.colors import to_rgb
 
 from burridge_knopoff.figures.branches import branch_colors
 from burridge_knopoff.figures.mean_distance import draw
+from burridge_knopoff.summaries.orbit_flags import CriticalStability
 
 RUN = {"law": ["linearized", "nonlinear"], "initial": ["plus"], "a": [0.0, 0.1, 0.2]}
 
@@ -73,8 +74,11 @@ def test_constant_friction_is_named_where_runs_have_it(attractors):
     assert not draw(runs.assign(least_friction=0.9 * runs["least_friction"])).axes[0].texts
 
 
-def test_no_line_joins_runs_and_a_c_is_marked_where_there_is_one():
-    orbits = xr.Dataset({"critical_a": ("law", [0.087, np.nan])}, {"law": RUN["law"]})
+def test_no_line_joins_runs_and_a_c_is_marked_unless_the_orbit_is_unstable_on_both_sides():
+    stability = np.array([CriticalStability.LOST, CriticalStability.UNSTABLE], "i1")
+    orbits = xr.Dataset(
+        {"critical_a": ("law", [0.087, 0.1]), "critical_stability": ("law", stability)}, {"law": RUN["law"]}
+    )
     first, second = draw(means(WITH_A_GAP), orbits).axes
     assert first.get_lines()[0].get_linestyle() == "None"
     assert [line.get_xdata() for line in first.get_lines()[1:]] == [[0.087, 0.087]]

@@ -71,6 +71,7 @@ def test_attractors_and_basins():
     assert title(plot(attractors)) == "(a) linearized law, $v=0.2$, coupling 1.5"
 
 
+@pytest.mark.slow
 def test_attractors_along_a_parameter():
     data = continue_attractors("linearized", [0.08, 0.09], v=0.2, samples=8, cores=1, **QUICK)
     assert [title(plot(data), k) for k in (0, 1)] == [

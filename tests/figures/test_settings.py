@@ -61,6 +61,7 @@ def test_pictures_have_the_same_bytes(run, tmp_path):
         assert (tmp_path / f"plain.{suffix}").read_bytes() == (tmp_path / f"own.{suffix}").read_bytes(), suffix
 
 
+@pytest.mark.slow
 def test_figures_in_a_notebook_look_the_same(run):
     """They are drawn later, under the settings of the notebook."""
     drawn = []
@@ -75,9 +76,8 @@ def test_figures_in_a_notebook_look_the_same(run):
     assert all(np.array_equal(*pair) for pair in zip(plain, settings, strict=True))
 
 
-@pytest.mark.parametrize(
-    "backend", [pytest.param("module://matplotlib_inline.backend_inline", marks=pytest.mark.slow), "none_such"]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("backend", ["module://matplotlib_inline.backend_inline", "none_such"])
 def test_a_backend_that_is_not_installed(backend, run, tmp_path):
     """As a notebook of another environment hands it to the programs that it starts."""
     bk = Path(sys.executable).parent / "bk"

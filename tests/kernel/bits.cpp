@@ -68,7 +68,7 @@ void read_model(Model &model) {
     model.law.slope = int(number[1]);
     model.law.linear = number[2] != 0.0;
     model.law.rate = number[3];
-    model.law.steepest = number[4];
+    model.law.steepest_at_rest = number[4] != 0.0;
     model.law.complete();
     model.v = number[5];
     model.symmetric = number[6] != 0.0;

@@ -70,11 +70,11 @@ def exponent_count(model):
 def case(model, monkeypatch):
     """Return the input of `bits.cpp`: settings, model, states."""
     monkeypatch.setattr("burridge_knopoff.running.kernel_model.KernelModel", dict)
-    *arrays, value, slope, linear, rate, steepest, v, symmetric, creep_speed, _ = kernel_model(model).values()
+    *arrays, value, slope, linear, rate, steepest_at_rest, v, symmetric, creep_speed, _ = kernel_model(model).values()
     monkeypatch.undo()
     stuck, single, many = starts(model)
     settings = [exponent_count(model).matrix().shape[1], COUNT, STEP]
-    numbers = [value, slope, linear, rate, steepest, v, symmetric, creep_speed]
+    numbers = [value, slope, linear, rate, steepest_at_rest, v, symmetric, creep_speed]
     return settings, *arrays, numbers, EDGES, TIMES, *single, stuck, *many
 
 

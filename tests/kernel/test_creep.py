@@ -104,6 +104,7 @@ def test_slow_drivers_start_and_stop_the_same_blocks(form, drag, groups):
     assert quasistatic == slow
 
 
+@pytest.mark.slow
 @GROUPS
 def test_events_of_a_slow_driver(groups):
     """Sizes, energies and times converge in proportion to the velocity of the driver."""

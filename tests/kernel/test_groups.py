@@ -98,6 +98,7 @@ def test_a_continued_run_has_the_events_of_the_whole_run_to_the_bit():
     assert len(later) > 100
 
 
+@pytest.mark.slow
 def test_a_hundred_thousand_blocks():
     """An event costs no more than in a short chain, however many blocks stick."""
     model = Model(Chain(100_000, coupling=100.0, pulling=1.0), law_of("carlson_langer", 5.0), 0.001)

@@ -27,6 +27,7 @@ def test_events_of_uniform_chains(options, blocks, tolerance):
     check_events(first, second, tolerance)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("initial", ["minus", "plus"])
 def test_mean_distance_outside_chaos(initial):
     """To 1e-11 on every grid value of a at which the run is not chaotic.

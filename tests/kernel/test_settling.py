@@ -144,6 +144,28 @@ def test_dense_samples_of_any_chain(blocks, law, contact, power, dashpots, clock
     assert np.allclose(parts, alone, rtol=0.0, atol=0.01 * interval, equal_nan=True)
 
 
+@pytest.mark.parametrize("offset", [-1e-7, -1e-8, -1e-10, 1e-10, 1e-8, 1e-7])
+def test_levels_close_to_the_ends_of_pieces(offset):
+    """J at an end, computed as part of a piece only if it is close to a level: in groups and in lanes it always is."""
+    model = Model(Chain(3), law_of("linearized", 0.08))
+    start, end = model.begin(MINUS), 400.0
+    run = simulate(model, initial=MINUS, transient=0.0, window=end, batches=2, events="all", lyapunov_exponents=0)
+    first, last = (np.stack([x[:, block] for x in (run.event_position, run.event_velocity)]) for block in (0, -1))
+    far = np.hypot(*(last - first))
+    levels = far[-200::5] * (1.0 + offset)
+    times, *_ = settling(model, start, end, levels)
+    settled = ~np.isnan(times)
+    assert settled.sum() > 10
+    grouped, *_ = settling(model, start, end, levels, groups=True)
+    assert np.allclose(grouped, times, rtol=0.0, atol=1e-6, equal_nan=True)
+    together = [prepared(model, start, end, levels) for _ in range(3)]
+    assert run_together(together) == 3 * [Status.COMPLETED]
+    for runner in together:
+        assert np.array_equal(runner.observer.results()["settling_time"], times, equal_nan=True)
+    for level, time in zip(levels[settled][:5], times[settled][:5], strict=True):
+        assert settling(model, start, time, (), sampling=end)[1][-1] == pytest.approx(level, rel=1e-9)
+
+
 def test_a_sweep_has_the_settling_times_of_its_runs():
     """In lanes of different a, of which some synchronize."""
     values = np.linspace(0.01, 0.16, 16)

@@ -154,7 +154,7 @@ class ExactMotion:
         return True
 
 
-@pytest.mark.parametrize("seed", quick_first(range(6), 2))
+@pytest.mark.parametrize("seed", quick_first(range(6), 1))
 @pytest.mark.parametrize("form", ["row", "ring"])
 @pytest.mark.parametrize("factors", [(1.0,), (1.0, -2.0, 0.5)])
 @GROUPS

@@ -10,12 +10,13 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import block_diag, expm
 
 from burridge_knopoff import Chain, ChainState, FormulaLaw, Model, law_of
+from burridge_knopoff.kernel._core import Exponents
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import CONTACTS
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from tests.conftest import quick_first
-from tests.flows import SYMMETRIC, carry, differences, directions
+from tests.flows import SYMMETRIC, carry, differences, directions, wave
 
 LAWS = ("linearized", "nonlinear")
 
@@ -27,7 +28,7 @@ def tangent_map(model, start, end):
 def force_on(model, position, velocity):
     """The force on each block, from positions relative to uniform sliding."""
     damping = model.chain.damping_matrix @ (velocity - model.v)
-    return float(model.law(model.v)) - model.chain.stiffness @ position - damping
+    return model.chain.thresholds * model.sliding_friction - model.chain.stiffness @ position - damping
 
 
 def near_sliding(blocks, amplitude):
@@ -43,18 +44,20 @@ def without_events(model, start, end, solver="series"):
 
 
 def variational(model, start, end):
-    """Integrate motion and perturbations with SciPy, under the nonlinear law."""
-    blocks, slips = model.blocks, ~start.stuck
+    """Integrate motion and perturbations with SciPy, under any law."""
+    blocks, slips, law = model.blocks, ~start.stuck, model.law
     sign = np.where(start.velocity < 0.0, -1.0, 1.0)
+    threshold, mass, along = model.chain.thresholds, model.chain.masses[:, None], model.chain.weakenings * sign
 
     def slope(_, y):
         position, velocity = y[:blocks], y[blocks : 2 * blocks]
         matrix = y[2 * blocks :].reshape(2 * blocks, -1)
-        weakening = 1.0 / (1.0 + model.a * sign * velocity)
-        acceleration = slips * (force_on(model, position, velocity) - sign * weakening)
+        friction, steepness = law.tape.run(along * velocity)
+        acceleration = slips * (force_on(model, position, velocity) - sign * threshold * friction) / mass[:, 0]
         change = -model.chain.stiffness @ matrix[:blocks] - model.chain.damping_matrix @ matrix[blocks:]
-        change += (model.a * weakening**2)[:, None] * matrix[blocks:]
-        return np.concatenate([velocity - model.v, acceleration, matrix[blocks:].ravel(), (slips * change.T).T.ravel()])
+        change -= (threshold * model.chain.weakenings * steepness)[:, None] * matrix[blocks:]
+        change *= slips[:, None] / mass
+        return np.concatenate([velocity - model.v, acceleration, matrix[blocks:].ravel(), change.ravel()])
 
     begin_with = np.concatenate([start.vector(), directions(start).ravel()])
     run = solve_ivp(slope, (0.0, end), begin_with, "DOP853", rtol=1e-13, atol=1e-18)
@@ -93,6 +96,48 @@ def test_a_nonlinear_piece_with_stuck_blocks_and_backward_slip_against_scipy():
     velocity = np.array([0.8, 0.0, 0.9, 0.0, -0.7])
     start = ChainState(np.array([0.1, 0.3, 0.0, 0.3, -0.1]), velocity, velocity == 0.0)
     assert np.abs(without_events(model, start, 0.2) - variational(model, start, 0.2)).max() < 1e-12
+
+
+#: Laws that are steeper at speeds that no block reaches, or that one reaches, than at rest.
+STEEPER = {
+    **{f"power {p}": f"1 - a*u + 0.3*u**{p}" for p in (4, 5, 6, 8)},
+    "product": "1 - a*u + 0.3*u*u*u*u*u",
+    "fractional": "1 - a*u + 0.001*((3 + u)**4.5 - 3**4.5)",
+    "quotient": "1/(1 + a*u**4)",
+    "pole": "1 + 0.1*u/(11 - u)",
+    "nested": "exp(-a*u)*(1 + log(1 + u**6))",
+    "step": "1 - a*u + 0.1*tanh((u - 3)/0.02)",
+}
+
+
+@pytest.mark.parametrize("name", STEEPER)
+@pytest.mark.parametrize("weakening", [1.0, (1.0, 0.0, -0.2, 1.05)])
+@pytest.mark.parametrize("damping", [0.0, (0.1, 0.3, 0.2)])
+def test_laws_that_are_steeper_than_at_rest_against_scipy(name, weakening, damping):
+    """The slope along the motion sets the parts in which perturbations are propagated, not the slope elsewhere."""
+    chain = Chain(
+        4, 1.3, damping=damping, mass=(1.0, 2.0, 0.7, 1.0), threshold=(1.0, 1.2, 0.8, 1.0), weakening=weakening
+    )
+    model = Model(chain, FormulaLaw(0.3, STEEPER[name]), 0.5, contact="symmetric")
+    start = ChainState(np.array([-0.8, 0.3, 0.2, 0.0]), np.array([1.1, 0.8, 0.0, -0.9]), np.arange(4) == 2)
+    exact = variational(model, start, 0.25)
+    runner, events = carry(model, start, 0.25, directions(start))
+    assert events == []
+    assert np.abs(runner.perturbations - exact).max() < 1e-11 * np.abs(exact).max()
+    assert runner.exponents.steps <= 3 * runner.kernel.steps
+
+
+@pytest.mark.parametrize("name", STEEPER)
+@pytest.mark.parametrize("groups", [True, False])
+@pytest.mark.parametrize("blocks", [3, 24])
+def test_slopes_that_no_block_reaches_cost_nothing(name, groups, blocks):
+    """Under `power 6` every piece was once divided into hundreds of parts."""
+    model = Model(Chain(blocks), FormulaLaw(0.3, STEEPER[name]), 0.5)
+    exponents = Exponents(blocks, 3, 0.0, np.array([0.0, 20.0]))
+    runner = Runner(model, groups=groups, exponents=exponents)
+    runner.begin(model.begin(wave(blocks)))
+    assert runner.run(20.0) == Status.COMPLETED
+    assert 0 < exponents.steps < 3 * runner.kernel.steps
 
 
 @pytest.mark.parametrize(("solver", "damping"), [("map", 0.0), ("series", 0.0), ("series", (0.1, 0.4, 0.0, 0.2))])

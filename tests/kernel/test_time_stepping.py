@@ -25,6 +25,7 @@ def test_fourth_order_without_events(law):
     assert position[-1] < 1e-8
 
 
+@pytest.mark.slow
 def test_first_order_with_events(law):
     """Events at step ends are late by half a step on average, whatever the order in between."""
     exact = simulate(law, 0.08, "minus", window=15.0, **OPTIONS)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import (
+    BifurcationKind,
     Chain,
     ContinuationSettings,
     Model,
@@ -23,6 +24,8 @@ from burridge_knopoff.model.parameters import plain_name
 from burridge_knopoff.model.sampling import sample_states
 from burridge_knopoff.summaries.attractors_of_law import attractors_of_law
 from burridge_knopoff.summaries.branch_numbering import branch_numbers, merge
+from tests.conftest import quick_first
+from tests.friction_oscillator import FORMULA, NUMBERS
 from tests.refused import refused
 
 QUICK = {"samples": 12, "fraction_width": 0.2, "transient": 1000.0, "window": 800.0, "perturbations": 8}
@@ -50,7 +53,7 @@ def attractors_at(data):
     return sorted(zip(slots["kind"].values.tolist(), slots["mean_distance"].values.tolist(), strict=True))
 
 
-@pytest.mark.parametrize(("parameter", "values"), [("a", A), ("v", V), ("mass[3]", MASS)])
+@pytest.mark.parametrize(("parameter", "values"), quick_first([("a", A), ("v", V), ("mass[3]", MASS)], 1))
 def test_the_attractors_at_each_value_are_those_of_a_search_there(parameter, values, request):
     """The search starts from a state on each attractor and from sampled states."""
     stored = {"a": "along_a", "v": "along_v"}.get(parameter)
@@ -168,6 +171,45 @@ def test_changes_along_other_parameters_are_where_synchrony_loses_stability(para
         follow(orbit, (values[0], values[1]), ContinuationSettings(largest_step=0.01), parameter=parameter)
     )
     inside(data, MotionKind.SYNCHRONIZED, bifurcation.value)
+
+
+#: Two blocks on a belt: coupling, and the range of v within which synchrony loses stability in a period doubling.
+BELTS = {0.5: (1.7, 1.8), 0.55: (1.6, 1.7), 0.45: (1.76, 1.83)}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("coupling", "distance", "refine"),
+    [
+        (0.5, 7e-4, 0.01),
+        (0.55, 7e-4, 0.01),
+        (0.45, 7e-4, 0.01),
+        (0.5, 7e-5, 1e-3),
+    ],
+)
+def test_synchrony_ends_where_it_loses_stability_however_slowly(coupling, distance, refine):
+    """At the nearest value below the period doubling perturbations of synchrony decay at a rate of 2e-4, or 2e-5."""
+    law, ends = {"formula": FORMULA, **NUMBERS}, BELTS[coupling]
+    options = {"blocks": 2, "coupling": coupling, "pulling": 1.0, "pulling_damping": 0.1}
+    orbit = synchronized_orbit(Model(Chain(**options), law_of(law), v=ends[0]))
+    (end,) = [item for item in locate_bifurcations(follow(orbit, ends, parameter="v")) if item.loses_stability]
+    assert end.kind == BifurcationKind.PERIOD_DOUBLING
+    low = end.value - distance
+    near = synchronized_orbit(orbit.model.at(v=low))
+    data = continue_attractors(
+        law, 0, v=[low, low + refine], samples=2, fraction_width=0.5, refine=refine, cores=1, **options,
+        starts=[(near.reference.position + near.model.sliding_offset + [1e-4, 0.0], near.reference.velocity)],
+    )  # fmt: skip
+    inside(data, MotionKind.SYNCHRONIZED, end.value)
+    assert MotionKind.SYNCHRONIZED in data["kind"].values[0]
+
+
+@pytest.mark.slow
+def test_synchrony_ends_where_its_successor_begins():
+    """Both contain the pitchfork, next to which the successor attracts as slowly as synchrony."""
+    data = along("a", [0.0869, 0.0875], refine=1e-5)
+    inside(data, MotionKind.SYNCHRONIZED, 0.08697290467)
+    inside(data, MotionKind.PERIODIC, 0.08697290467)
 
 
 @pytest.mark.slow

@@ -21,6 +21,7 @@ from tests.forged import forge
 from tests.pages import blocks
 from tests.refused import refused
 from tests.small_study import OF_POINTS, run_study
+from tests.workflow.conftest import snakemake_of_checkout
 
 CONFIG = {"study": "few", "a": [0.05, 0.08, 0.22], "initial": {"minus": {}, "plus": {}}}
 CONFIG |= {"transient": 20, "window": 60, "batches": 2, "event_window": 50}
@@ -258,7 +259,7 @@ def test_a_file_that_is_corrupt_or_not_of_the_study_is_named(results, tmp_path, 
     assert messages[0] == messages[1]
     assert messages[0].startswith(f"{tmp_path / name}: ")
     root = tmp_path.parents[1]
-    remedy = f"snakemake -c2 --configfile few.yaml -R {tmp_path.relative_to(root)}/{name}"
+    remedy = f"{snakemake_of_checkout(root)} --configfile few.yaml -R {tmp_path.relative_to(root)}/{name}"
     assert messages[0].endswith(f"; remake it: cd {root} && {remedy}")
 
 

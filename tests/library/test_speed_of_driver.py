@@ -57,6 +57,7 @@ def test_the_branch_of_an_orbit_along_v_is_that_of_scipy():
         assert period == pytest.approx(orbit.period, abs=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("parameter", ["mus", "mud", "v0", "pulling_damping", "mass[1]"])
 def test_branches_along_other_parameters(parameter):
     """The last orbit has the period of SciPy at its value."""
@@ -71,6 +72,7 @@ def test_branches_along_other_parameters(parameter):
     assert branch[-1].value < value
 
 
+@pytest.mark.slow
 def test_the_map_of_one_block_is_over_its_position_and_velocity():
     """Where the block sticks in the end by SciPy, the branch is that of sticking."""
     model = oscillator(1.4)

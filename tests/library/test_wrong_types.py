@@ -198,6 +198,7 @@ FORMULAS = {
     "FormulaLaw.steepest_slope",
     "Model.least_friction",
     "Model.check_directions",
+    "SteadyMotion.amplitude",
 }
 TYPES = ("float", "int", "bool", "Any")
 INTERVALS = [("basin_map", name) for name in ("first_position", "last_position", "first_velocity")]

@@ -198,7 +198,7 @@ def test_what_snakemake_says_is_there_without_a_plan_or_with_an_option(written, 
 
 @pytest.mark.parametrize("dryrun", [False, True])
 def test_a_run_with_nothing_to_do_is_recorded_too(written, dryrun):
-    """No hook of the Snakefile runs then, and `bk prune` goes by the config of the last run."""
+    """No hook of the Snakefile runs then, and `bk check` goes by the config of the last run."""
     recorded = []
     said = written(STARTED, dryrun=dryrun, recording=lambda: recorded.append(True))
     assert said == ["Nothing to be done (all requested files are present and up to date)."]

@@ -120,6 +120,50 @@ def test_a_run_is_repeated_from_its_initial_state_and_stores_where_it_began():
     assert stored.attrs["history"] == again.to_dataset().attrs["history"]
 
 
+GIVEN = {
+    "a state of the paper": "plus",
+    "one number": {"position": -0.9, "velocity": 0.3},
+    "random": InitialState("rough", "random=uniform,low=-1.5,high=-0.5,seed=1", 0.3),
+    "a state of a motion": Model(Chain(3), law_of("nonlinear", 0.08), 0.5).begin(PAPER_STATES["minus"], "tested"),
+    "a run": simulate("nonlinear", 0.08, "plus", v=0.5, transient=0.0, window=7.5),
+}
+
+
+@pytest.mark.filterwarnings("ignore:start tested")
+@pytest.mark.parametrize("start", ["moving", "tested"])
+@pytest.mark.parametrize("form", GIVEN)
+def test_the_initial_state_of_a_run_is_that_from_which_it_started(form, start):
+    """It is where the recorded motion begins, whatever form was given; the command of the file names that form."""
+    options = {"transient": 0.0, "window": 20.0, "trajectory": 20.0, "trajectory_sampling": 0.5, "start": start}
+    run = simulate(Model(Chain(3), law_of("nonlinear", 0.08), 0.5), initial=GIVEN[form], **options)
+    assert run.trajectory_time[0] == run.begin_time
+    assert run.initial.position == pytest.approx(run.position[0], abs=1e-14)
+    assert run.initial.velocity == pytest.approx(run.velocity[0], abs=1e-14)
+    stored = run.to_dataset()
+    assert tuple(stored["initial_velocity"].values) == run.initial.velocity
+    assert stored.attrs["history"].startswith("bk simulate ") == (form not in ("a state of a motion", "a run"))
+    again = simulate(run.model, initial=run.initial, **options)
+    assert again.initial.position == run.initial.position
+    # The name of a state of the paper does not go with other numbers.
+    elsewhere = simulate("linearized", 0.08, run.initial, v=0.2, **options)
+    assert elsewhere.initial.position == run.initial.position
+    assert elsewhere.initial.name == ("own" if form == "a state of the paper" else run.initial.name)
+
+
+def test_a_printed_run_tells_what_is_not_the_papers():
+    """Of the paper's model only the law and a."""
+    short = {"transient": 0.0, "window": 1.0}
+    paper = simulate("nonlinear", 0.1, "plus", **short)
+    assert repr(paper).startswith("<Trajectory of 3 blocks from plus, nonlinear law, a = 0.1: ")
+    springs = {"coupling": (1.5, 1.0), "pulling": 0.5, "damping": 0.1, "pulling_damping": 0.2}
+    blocks = {"threshold": (1.0, 1.0, 1.5), "mass": 2.0, "weakening": (1.0, 0.0, 1.0)}
+    model = Model(Chain(3, **springs, **blocks), law_of("stribeck", 0.1, {"sigma": 0.02}), 0.3, "symmetric")
+    printed = repr(simulate(model, initial="plus", **short))
+    for name, value in {**springs, **blocks, "sigma": 0.02, "v": 0.3, "contact": "symmetric"}.items():
+        assert f", {name} = {value!r}" in printed
+    assert "law 1 - c*a*u, a = 0.1, c = 0.5" in repr(simulate({"formula": "1 - c*a*u", "c": 0.5}, 0.1, **short))
+
+
 def test_own_numbers_are_taken_as_they_are_under_any_name():
     plus = PAPER_STATES["plus"]
     for form in (as_numbers(plus), {"name": "plus", "position": plus.position, "velocity": plus.velocity}):

@@ -147,6 +147,7 @@ def stop_rates(model, state, duration):
     return np.bincount(stops, minlength=model.blocks + 1)[1:] / duration
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("chain", "v", "state", "never"),
     [

@@ -73,6 +73,7 @@ def test_a_window_that_is_too_short_for_an_error_is_refused(window):
         transverse_exponent(chain, chain.begin(SAMPLE.initial_states(3)[0]), 200.0, window)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("window", [500.0, 2500.0])
 def test_deviations_from_the_multiplier_are_within_the_error(law, window):
     """A batch of 500 is close to 88 periods of synchrony: the scatter of batches alone may be 1e-17 there."""

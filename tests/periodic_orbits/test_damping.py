@@ -108,6 +108,7 @@ def test_a_branch_that_turns_back_to_0_is_that_along_a(plain):
     assert branch[-1].orbit.period == pytest.approx(again.period, rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("parameter", ["damping", "damping[1]", "pulling_damping[2]", "pulling[2]"])
 def test_a_parameter_grows_from_0(parameter):
     """Motion settles on the orbits of the branch. Steps were once a share of the parameter, or failed at 0."""

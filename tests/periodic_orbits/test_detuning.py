@@ -81,6 +81,7 @@ def settled(model, orbit):
     return simulate(model, initial=start, transient=12000.0, window=2000.0, event_window=200.0)
 
 
+@pytest.mark.slow
 def test_runs_are_periodic_inside_the_tongue_and_not_outside(grazing):
     """Compare the motion 2e-4 to either side of the curve in the plane of a and mass[3]."""
     curve = follow_bifurcation(grazing, ("mass[3]", "a"), (0.05, 0.085), WIDE)

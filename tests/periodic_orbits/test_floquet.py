@@ -20,6 +20,15 @@ def test_multipliers_outside_the_unit_circle_are_unstable():
 
 
 @pytest.mark.parametrize(
+    ("symmetric", "transverse", "attracts"),
+    [([0.9j, -0.9j], [1.2], True), ([1.1j, -1.1j], [0.2], False), ([1.0], [0.2], False), ([0.5], [], False)],
+)
+def test_synchrony_attracts_within_itself_by_the_symmetric_multipliers_alone(symmetric, transverse, attracts):
+    spectrum = Multipliers(np.array(symmetric), np.array(transverse), power=1)
+    assert spectrum.attracts_within_synchrony == attracts
+
+
+@pytest.mark.parametrize(
     ("symmetry", "minus"),
     [
         (Symmetry.ASYMMETRIC, BifurcationKind.PERIOD_DOUBLING),

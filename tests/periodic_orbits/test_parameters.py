@@ -29,7 +29,7 @@ from burridge_knopoff import (
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.periodic import find_periodic_orbit
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import bifurcations_of, critical_a
-from tests.conftest import crossed, quick_first
+from tests.conftest import crossed
 from tests.refused import refused
 
 #: a_c of the paper's chain, from interval arithmetic.
@@ -115,8 +115,9 @@ def check_curve(bifurcation, kind, parameter, a, accuracy):
         assert (orbit.model, orbit.residual < 1e-10) == (MODEL.at(**{"a": first, parameter: second}), True)
 
 
-@pytest.mark.parametrize("parameter", quick_first(["damping", "pulling_damping[2]", "pulling_damping"], 2))
-@pytest.mark.parametrize("first", quick_first([False, True], 1))
+@pytest.mark.slow
+@pytest.mark.parametrize("parameter", ["damping", "pulling_damping[2]", "pulling_damping"])
+@pytest.mark.parametrize("first", [False, True])
 def test_curves_begin_at_0(parameter, first):
     """The parameter is either of the two of the curve; along it no root is bracketed at 0."""
     start = MODEL.at(**{parameter: 0.0})
@@ -161,6 +162,7 @@ def test_a_parameter_of_a_law_passes_through_0():
     assert branch[-1].orbit.period == pytest.approx(again.period, rel=1e-10)
 
 
+@pytest.mark.slow
 def test_the_mirror_image_of_an_orbit_has_the_same_curve(seven_stops):
     mirrored = find_periodic_orbit(
         seven_stops.model, seven_stops.reference.mirrored(), seven_stops.return_time, seven_stops.symmetry

@@ -11,10 +11,13 @@ from burridge_knopoff import (
     FormulaLaw,
     InitialState,
     Model,
+    MotionKind,
     OrbitError,
     Settings,
     Symmetry,
+    find_attractors,
     law_of,
+    limit_cycle,
     multipliers,
     simulate,
     synchronized_orbit,
@@ -24,6 +27,7 @@ from burridge_knopoff.periodic_orbits.flow import flow
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import finite_difference_multiplier
 from burridge_knopoff.running.runner import Runner
 from tests.periodic_orbits.exact import after_a_period, exact_transverse_multiplier, slipping_state
+from tests.scipy_flow import model_events
 
 
 def transverse(orbit):
@@ -213,3 +217,66 @@ def test_the_orbit_at_other_couplings_has_one_cycle(coupling, law):
     # They are slightly below that of one block on two springs, and increase with a.
     assert (np.diff(periods) > 0.0).all()
     assert 5.3 < periods[0] < periods[-1] < 5.8
+
+
+def squared(a):
+    """Return a model of the tutorial, whose orbit of one turn repels symmetric perturbations."""
+    return Model(Chain(3, coupling=1.5), FormulaLaw(a, "1/(1 + a*u)**2"))
+
+
+STIFF = Model(Chain(3, coupling=1.5), law_of("linearized", 0.26574379590))
+#: Models, and the largest modulus of a symmetric multiplier of their synchronized orbits.
+SYMMETRIC = [(squared(0.04), 1.239), (squared(0.1), 1.692), (squared(0.16), 2.412), (STIFF, 2.116)]
+SYMMETRIC += [(Model(Chain(3), law_of("linearized", 0.08)), 0.24)]
+
+
+@pytest.mark.parametrize(("model", "modulus"), SYMMETRIC)
+def test_symmetric_multipliers_against_another_integrator(model, modulus):
+    """Those of the return of mirror-symmetric states, by finite differences of a flow that SciPy computes."""
+    orbit = synchronized_orbit(model)
+    spectrum, start = multipliers(orbit), orbit.reference
+    half = np.sqrt(0.5)
+    basis = np.kron(np.eye(2), [[half, 0.0, half], [0.0, 1.0, 0.0]])
+    basis *= ~np.concatenate([np.zeros(3, dtype=bool), start.stuck])
+
+    def end(change):
+        return model_events(model, ChainState(*np.split(start.vector() + change, 2), start.stuck), orbit.period)[1]
+
+    step = 1e-4
+    matrix = np.stack([basis @ (end(step * row) - end(-step * row)) / (2.0 * step) for row in basis], axis=1)
+    expected = np.linalg.eigvals(matrix)
+    for value in (1.0, *spectrum.symmetry_preserving[np.abs(spectrum.symmetry_preserving) > 1e-3]):
+        assert np.abs(expected - value).min() < 1e-4
+    assert np.abs(spectrum.symmetry_preserving).max() == pytest.approx(modulus, abs=1e-3)
+    assert spectrum.attracts_within_synchrony == (modulus < 1.0)
+
+
+@pytest.mark.parametrize(("model", "modulus"), SYMMETRIC)
+def test_a_symmetric_perturbation_leaves_or_returns_as_its_multiplier_says(model, modulus):
+    orbit, runner = synchronized_orbit(model), Runner(model)
+    vector = orbit.reference.vector()
+    state, distances = ChainState(vector[:3] + 1e-9 * np.eye(3)[1], vector[3:], orbit.reference.stuck), []
+    for _ in range(60):
+        state = runner.state_after(state, orbit.period)
+        distances.append(np.abs(state.vector() - vector).max())
+    # A displacement along the orbit neither grows nor decays.
+    growing = np.flatnonzero((np.array(distances) > 1e-8) & (np.array(distances) < 1e-4))
+    assert (len(growing) > 0) == (modulus > 1.0)
+    if modulus > 1.0:
+        growing = growing[growing < growing[0] + len(growing)]
+        rate = np.polyfit(growing, np.log(distances)[growing], 1)[0]
+        assert rate == pytest.approx(np.log(modulus), rel=0.1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("a", "period"), [(0.04, 106.474), (0.1, 75.4416), (0.16, 133.939)])
+def test_other_synchronized_motion_attracts_where_the_orbit_of_one_turn_is_unstable(a, period):
+    model = squared(a)
+    attractors, labels = find_attractors(model, samples=40)
+    number = next(k for k, item in enumerate(attractors) if item.motion.kind == MotionKind.SYNCHRONIZED)
+    assert (labels == number).mean() >= 0.4
+    cycle = limit_cycle(model, attractors[number].motion.state(), 3000.0)
+    assert (cycle.symmetry, cycle.period) == (Symmetry.SYNCHRONIZED, pytest.approx(period, rel=1e-5))
+    spectrum = multipliers(cycle)
+    assert spectrum.attracts_within_synchrony
+    assert spectrum.unstable_count == 0

@@ -174,6 +174,18 @@ def test_two_blocks_desynchronize_in_a_period_doubling():
     assert np.isnan(symmetric_period_doubling_a(located))
 
 
+def test_a_c_is_that_of_an_orbit_that_attracts_within_synchrony(bifurcations, critical):
+    """At coupling 1.2 the orbit repels symmetric perturbations at its a_c; with weak thresholds a_c is five times as
+    large and its orbit attracts them.
+    """
+    weak, stiff = (
+        bifurcations_of(synchronized_orbits(Model(chain, law_of("linearized", 0.1))))
+        for chain in (Chain(3, threshold=0.2), Chain(3, coupling=1.2))
+    )
+    assert critical_a(stiff) == pytest.approx(0.19534254, abs=1e-8)
+    assert critical_a([*stiff, *weak]) == pytest.approx(5.0 * critical["linearized"], rel=1e-9)
+
+
 def test_five_blocks_desynchronize_where_the_leading_multiplier_is_1():
     orbits = synchronized_orbits(Model(Chain(5), law_of("linearized", 0.08)))
     a = critical_a(bifurcations_of(orbits))

@@ -18,6 +18,7 @@ from burridge_knopoff.provenance.files import (
     check_target,
     display_path,
     nearest_folder,
+    read_regular,
     remove_links,
     reserve_room,
     write_text,
@@ -237,3 +238,18 @@ def test_streams_that_are_no_files_are_left_alone():
     reserve_room(io.StringIO())
     with open("/dev/null", "w") as stream:
         reserve_room(stream)
+
+
+def test_only_regular_files_are_read(tmp_path):
+    """A pipe would wait for its writer."""
+    (tmp_path / "file").write_bytes(b"abc")
+    assert (read_regular(tmp_path / "file"), read_regular(tmp_path / "file", 2)) == (b"abc", b"ab")
+    (tmp_path / "link").symlink_to("file")
+    assert read_regular(tmp_path / "link") == b"abc"
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "linked").symlink_to("pipe")
+    for name, words in (("pipe", "not a regular file"), ("linked", "not a regular file"), (".", "a folder")):
+        with pytest.raises(OSError, match=words):
+            read_regular(tmp_path / name)
+    with pytest.raises(FileNotFoundError):
+        read_regular(tmp_path / "none")

@@ -49,6 +49,7 @@ JSON = st.recursive(
 )
 
 
+@pytest.mark.slow
 @given(st.dictionaries(st.text(max_size=3), JSON, max_size=4), st.dictionaries(st.text(max_size=3), JSON, max_size=4))
 def test_different_values_have_different_words_and_digests(one, other):
     """Values are different if their JSON is, as in the attributes of a file."""

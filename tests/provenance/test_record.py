@@ -55,6 +55,14 @@ WORDS = [
 ]
 
 
+def of_checkout(words, folder):
+    """Return the words of a command that runs no Snakefile and no profile of others."""
+    checkout = os.path.relpath(record.CHECKOUT, folder)
+    if "-s" in words:
+        return ["-s", "SNAKEFILE", "--workflow-profile", "none", *words[2:]]
+    return ["-s", f"{checkout}/Snakefile", "--workflow-profile", f"{checkout}/profiles/default", *words]
+
+
 @pytest.mark.parametrize("words", WORDS)
 def test_the_recorded_words_are_those_of_the_command(tmp_path, monkeypatch, words):
     """A shell passes them on as they are, and runs nothing."""
@@ -63,10 +71,30 @@ def test_the_recorded_words_are_those_of_the_command(tmp_path, monkeypatch, word
     monkeypatch.chdir(tmp_path)
     recorded(results, arguments=shlex.join(words))
     assert read_study_record(results)["arguments"] == words
-    line = remake_command(results / "a.nc")
+    line = remake_command(results / "a.nc", is_own_run=True)
     assert shell(line, tmp_path) == ["-c2", *words, "-R", "results/mine/a.nc"]
     line = remake_command(results / "study.json", listed=["echo", "a.nc", "b.nc"])
-    assert shell(line, tmp_path) == ["-c2", *words, "-R", "a.nc", "b.nc"]
+    assert shell(line, tmp_path) == ["-c2", *of_checkout(words, tmp_path), "-R", "a.nc", "b.nc"]
+
+
+def test_the_command_names_the_snakefile_of_this_checkout_unless_it_runs_there(tmp_path, monkeypatch):
+    checkout, results = tmp_path / "checkout", tmp_path / "checkout/results/mine"
+    results.mkdir(parents=True)
+    (checkout / "Snakefile").touch()
+    monkeypatch.setattr(record, "CHECKOUT", checkout)
+    recorded(results, arguments="--config v=0.2")
+    monkeypatch.chdir(checkout)
+    assert remake_command(results / "a.nc") == "snakemake -c2 --config v=0.2 -R results/mine/a.nc"
+    other = tmp_path / "other/results/mine"
+    other.mkdir(parents=True)
+    monkeypatch.chdir(tmp_path / "other")
+    # From a folder without a Snakefile the run named that of the checkout.
+    for named in ("", "-s ../checkout/Snakefile ", "-s ../checkout/workflow/Snakefile "):
+        recorded(other, arguments=f"{named}--config v=0.2")
+        assert remake_command(other / "a.nc") == (
+            "snakemake -c2 -s ../checkout/Snakefile --workflow-profile ../checkout/profiles/default --config v=0.2 "
+            "-R results/mine/a.nc"
+        )
 
 
 def shell(line, folder):
@@ -104,7 +132,7 @@ def test_a_record_with_other_arguments_than_a_run_has_is_refused(tmp_path, monke
     recorded(results, arguments=arguments)
     with refused("study.json"):
         read_study_record(results)
-    assert remake_command(results / "a.nc") == "snakemake -c2 -R results/mine/a.nc"
+    assert remake_command(results / "a.nc", is_own_run=True) == "snakemake -c2 -R results/mine/a.nc"
 
 
 def test_the_owner_of_a_folder_is_named_without_control_characters(tmp_path):

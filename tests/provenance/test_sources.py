@@ -205,6 +205,8 @@ LOOKED_UP = ("burridge_knopoff/__init__.py",)
 LOOKED_UP += ("cli/__init__.py", "show/picture.py", "show/summary.py")
 #: The module is among its params, and the fingerprint of its rule includes it.
 LOOKED_UP += ("scripts/figure.py",)
+#: It imports what the scripts name themselves.
+LOOKED_UP += ("burridge_knopoff/script_server.py",)
 
 
 def test_all_imports_can_be_followed():

@@ -54,7 +54,7 @@ def poor(tmp_path_factory) -> Poor:
     content = json.loads(
         '{"study": "poor", "v": 0.1, "contact": "one_sided", "start": "moving", "counts": {"fails": 1},'
         ' "independent_counts": {"fails": 1}, "claims": [{"name": "none", "topic": "chaos",'
-        ' "statement": "It </script><img src=x onerror=alert(1)>.",'
+        ' "statement": "It </script><img src=x onerror=alert(1)>.", "rule": "Holds <b onclick=x>if</b>.",'
         ' "place": "Sec. <b onclick=x>1</b>", "verdict": "fails", "own": "fails", "reason": "No run.", "changes": "",'
         ' "measured": [{"quantity": "<i onmouseover=x>rate</i>", "value": 1.0, "error": null, "proved": false}],'
         ' "conventions": {"<u onfocus=x>any</u>": "not testable"}, "figure": "", "depends_on": [],'

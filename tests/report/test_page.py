@@ -11,10 +11,14 @@ import xarray
 
 from burridge_knopoff.claims import paper
 from burridge_knopoff.claims.formats import TITLES
+from burridge_knopoff.continuation.branch_changes import Change
 from burridge_knopoff.dataset.summary import write_summary
+from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.report.page import Sources, render
 from burridge_knopoff.report.verdicts import MAIN, MEANINGS, SIGNS
+from tests.conftest import quick_first
 from tests.report.conftest import CLAIMS
+from tests.report.test_tables import bifurcations
 from tests.small_study import run_study
 
 PAPER = "https://arxiv.org/abs/nlin/0310030"
@@ -59,7 +63,8 @@ def page(html):
 
 def test_what_is_missing_is_said_in_a_line(page):
     for line in (
-        "No loss of stability of a synchronized orbit was found",
+        "Only in chains of three blocks is the synchronized orbit continued along a , stable or not.",
+        "This study does not search for bifurcations of its attractors.",
         "This study has no maps of basins.",
         "W never crosses 0 upward: the section is never reached in any run.",
         "The results folder has no benchmark files of Snakemake.",
@@ -67,6 +72,24 @@ def test_what_is_missing_is_said_in_a_line(page):
         assert line in page.whole_text
     charts = [attributes["data-chart"] for _, attributes in page.elements if "data-chart" in attributes]
     assert set(charts) == {"distance", "exponents"}
+
+
+@pytest.mark.parametrize(
+    ("ends", "words"),
+    [
+        (True, "linearized 0.01000000000 ± 1.0 × 10⁻¹⁰ pitchfork branch 0 ends, synchronized"),
+        (False, "No branch of synchronized attractors was seen to begin, end or change between the values of a"),
+    ],
+)
+def test_a_chain_without_an_orbit_has_the_bifurcations_of_its_synchronized_attractors(poor, tmp_path, ends, words):
+    row = (Change.END, 0, 4, MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)
+    path = tmp_path / "bifurcations.nc"
+    write_summary(bifurcations([row] if ends else [(Change.PASSED, *row[1:])]), path)
+    summaries = {**poor.sources.summaries, "bifurcations": path}
+    text = Page(render(poor.study, replace(poor.sources, summaries=summaries))).whole_text
+    assert words in text
+    assert "This study does not search for bifurcations" not in text
+    assert ("bifurcations.txt" in text) == ends
 
 
 def test_three_sections_stand_open_and_every_statement_has_its_place(poor):
@@ -158,7 +181,7 @@ def test_the_same_inputs_give_the_same_page(poor, html):
     assert render(poor.study, poor.sources, ["--configfile", "poor.yaml"]) == html
 
 
-@pytest.mark.parametrize(("values", "charts"), [([0.1, 0.2], 2), ([0.1], 0)])
+@pytest.mark.parametrize(("values", "charts"), quick_first([([0.1], 0), ([0.1, 0.2], 2)], 1))
 def test_a_study_of_two_parameters_begins_with_the_distance(tmp_path, values, charts):
     """As maps to point at if both have several values, else as a picture."""
     grid = {"a": values, "v": [0.1, 0.2]}

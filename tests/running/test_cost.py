@@ -99,6 +99,17 @@ def test_nothing_is_said_of_the_chains_of_the_paper():
     assert [line.rpartition(", ")[2] for line in costs] == ["4e+06"]
 
 
+def test_the_cost_of_a_ring_has_no_jump_where_it_becomes_dense():
+    """From eight neighbours to ten, while all blocks slip."""
+    costs = []
+    for cut_off in (4, 5):
+        chain = Chain(1000, ends="ring", springs={"distance": "3/r", "cut_off": cut_off}, pulling=1.0)
+        model = Model(chain, law_of("nonlinear", 0.3))
+        begun = model.begin(InitialState("alike", -0.9, 0.1))
+        costs.append(cost_of(model, begun, Settings(lyapunov_exponents=0))[0])
+    assert costs[0] < costs[1] < 3.0 * costs[0]
+
+
 def test_the_cost_of_a_dense_network_names_its_springs():
     """A grid of four neighbours is not dense; in a dense network an event costs something though all blocks stick."""
     law, state = law_of("carlson_langer", 1.0, {"sigma": 0.2}), InitialState("alike", -0.9, 0.0)

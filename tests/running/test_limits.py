@@ -9,7 +9,6 @@ import pytest
 
 from burridge_knopoff import simulate
 from burridge_knopoff.running import runner
-from tests.conftest import quick_first
 from tests.refused import refused
 
 SINGLE = """
@@ -34,7 +33,8 @@ PROGRAMS = {
 }
 
 
-@pytest.mark.parametrize("program", quick_first(PROGRAMS, 1))
+@pytest.mark.slow
+@pytest.mark.parametrize("program", PROGRAMS)
 def test_ctrl_c_ends_a_long_chain_at_once(program):
     """It took 151 s when a call of the kernel was limited only by its number of steps."""
     process = subprocess.Popen(

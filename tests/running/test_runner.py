@@ -62,7 +62,7 @@ def carlson_langer(a):
             (unequal_blocks, 0.4, 500.0, 20, 1e-8),
             (carlson_langer, 5.0, 150.0, 40, 1e-6),
         ],
-        2,
+        1,
     ),
 )
 def test_example_studies_against_scipy(repository, model, a, end, least, tolerance):

@@ -228,22 +228,27 @@ def test_where_uniform_sliding_is_unstable():
     ]
 
 
-def test_where_the_synchronized_orbit_loses_its_stability():
+def test_how_the_stability_of_the_synchronized_orbit_changes():
     nan = np.nan
     data = of_module(
         orbits,
-        {"law": ["x", "y", "z"], "a": [0.1]},
-        status=np.array([[0], [0], [3]], "i1"),
-        critical_a=[0.08, nan, nan],
-        grazing_a=[0.03, nan, nan],
-        bifurcation_kind=np.array([4, -1, -1], "i1"),
-        bifurcation_side=np.array([1, -1, -1], "i1"),
+        {"law": ["x", "y", "z", "u", "v"], "a": [0.1, 0.2]},
+        status=np.array([[0, 0], [0, 0], [3, 3], [0, 0], [0, 0]], "i1"),
+        attracts_within_synchrony=np.array([[1, 1], [1, 1], [-1, -1], [1, 0], [1, 1]], "i1"),
+        critical_a=[0.08, nan, nan, 0.15, 0.15],
+        critical_stability=np.array([1, -1, -1, 0, 2], "i1"),
+        grazing_a=[0.03, nan, nan, nan, nan],
+        bifurcation_kind=np.array([4, -1, -1, 4, 2], "i1"),
+        bifurcation_side=np.array([1, -1, -1, -1, -1], "i1"),
     )
     assert orbits.digest(data).splitlines() == [
         "x: the synchronized orbit loses its transverse stability at a = 0.08 (supercritical pitchfork); block 2 "
         "begins to stick at a = 0.03",
-        "y: no a was found at which the synchronized orbit loses its transverse stability",
+        "y: no a was found at which the transverse multiplier of the synchronized orbit reaches the unit circle",
         "z: not computed, as the chain has not three blocks",
+        "u: the synchronized orbit, unstable within synchrony, changes its transverse stability at a = 0.15 "
+        "(pitchfork): no end of synchrony; it repels mirror-symmetric perturbations at a = 0.2",
+        "v: the synchronized orbit gains its transverse stability at a = 0.15 (period doubling)",
     ]
 
 

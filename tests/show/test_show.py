@@ -20,6 +20,7 @@ from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.show.result import open_result
 from burridge_knopoff.show.summary import digest, summary_lines
 from burridge_knopoff.study.formatting import to_ascii, with_error
+from tests.workflow.conftest import snakemake_of_checkout
 
 BK = str(Path(sys.executable).parent / "bk")
 
@@ -190,6 +191,7 @@ def test_corrupt_and_foreign_files_are_refused_in_a_line(point, study, tmp_path,
         dataset.title = "of another program"
     inside.write_bytes(whole[:-100])
     root = study.parents[1]
+    remedy = f"{snakemake_of_checkout(root)} -R {inside.relative_to(root)}"
     for path, words in (
         (tmp_path / "cut.nc", "corrupt"),
         (tmp_path / "changed.nc", "changed"),
@@ -198,7 +200,10 @@ def test_corrupt_and_foreign_files_are_refused_in_a_line(point, study, tmp_path,
         (tmp_path / "none.nc", "missing"),
         (study, "summary/claims.md"),
         (study / "study.json", ".json"),
-        (inside, f"remake it: cd {shlex.quote(str(root))} && snakemake -c2 -R {inside.relative_to(root)}"),
+        (
+            inside,
+            f"remake it: cd {shlex.quote(str(root))} && {remedy}",
+        ),
     ):
         said = output_of(capsys, path, code=2)
         assert said.startswith(f"bk show: {path}: ")

@@ -2,6 +2,7 @@
 
 from itertools import chain, pairwise, product
 
+import netCDF4
 import pytest
 
 from burridge_knopoff.check.leftovers import leftovers
@@ -121,32 +122,39 @@ def test_chunks_are_all_points_in_order(values):
     assert not chunks(load(grid=None, a=[0.1, 0.2]))
 
 
+def write_run(path, values):
+    """Write what a point file says of its run."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with netCDF4.Dataset(path, "w") as dataset:
+        dataset.law, dataset.initial = "linearized", "pair"
+        for name, value in values.items():
+            dataset.createVariable(name, "f8")[...] = value
+
+
 def test_the_record_of_a_study_is_read_again_and_its_leftovers_are_known(tmp_path):
     small = load(grid={"a": [0.2], "v": [0.1, 0.2]})
     results = tmp_path / "results" / "plane"
     results.mkdir(parents=True)
     write_study_record(results, small.config, small.parameters, "plane.yaml", {}, "")
     assert recorded_study(results)[1] == small
+    # {name: values in the file, whether it is left over}
     files = {
-        "points/linearized/pair/a0.2000_v0.1000.nc": False,
-        "points/linearized/pair/a0.2000_v0.3000.nc": True,
-        "points/linearized/pair/a0.2000.nc": True,
-        "points/linearized/pair/a0.2000_coupling-0.5000_v0.1000.nc": True,
-        "points/linearized/pair/notes.nc": False,
-        "logs/simulate/linearized/pair/a0.2000_v0.3000.log": True,
-        "chunks/0000.done": False,
-        "chunks/0001.done": True,
-        "logs/chunk/0001.log": True,
-        "summary/lyapunov.nc": False,
-        "summary/stick_slip.nc": True,
-        "figures/grid_kinds.png": False,
-        "figures/mean_distance.png": True,
+        "a0.2000_v0.1000": ({"a": 0.2, "v": 0.1}, False),
+        "a0.2000_v0.3000": ({"a": 0.2, "v": 0.3}, True),
+        "a0.2000_v0.4000": ({"a": 0.2, "v": 0.3}, False),
+        "a0.2000": ({"a": 0.2, "v": 0.1}, True),
+        "a0.2000_coupling-0.5000_v0.1000": ({"a": 0.2, "coupling": -0.5, "v": 0.1}, True),
+        "notes": ({"a": 0.2}, False),
     }
-    for name in files:
-        (results / name).parent.mkdir(parents=True, exist_ok=True)
-        (results / name).touch()
-    paths = {path.relative_to(results).as_posix() for path in leftovers(results, small)}
-    assert paths == {name for name, left in files.items() if left}
+    points, logs = (results / f"{folder}/linearized/pair" for folder in ("points", "logs/simulate"))
+    for name, (values, _) in files.items():
+        write_run(points / f"{name}.nc", values)
+        (logs / f"{name}.log").parent.mkdir(parents=True, exist_ok=True)
+        (logs / f"{name}.log").touch()
+    expected = {
+        path for name, (_, left) in files.items() for path in (points / f"{name}.nc", logs / f"{name}.log") if left
+    }
+    assert {*leftovers(results, small)} == expected
 
 
 def test_a_point_that_fails_is_named_with_its_command_and_the_others_are_made(tmp_path):

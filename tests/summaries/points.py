@@ -28,7 +28,8 @@ def write_points(
 def scalars(study: Study, results: Path, motion: MotionSettings | None = None) -> xarray.Dataset:
     """Return the scalars of the points of a study."""
     motion = motion or MotionSettings()
-    return runs.summarize(study, results, motion.period_tolerance, motion.longest_period)
+    names = ("period_tolerance", "longest_period", "synchronization_threshold")
+    return runs.summarize(study, results, **{name: getattr(motion, name) for name in names})
 
 
 def kinds(

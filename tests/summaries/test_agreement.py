@@ -36,9 +36,10 @@ def compare(runs, tmp_path):
         grid = study, _ = grid_of(tmp_path, ["minus"], {"0.0500": 0.05, "0.0800": 0.08}, **SETTINGS)
         for point in all_points(study):
             key = point["law"], study.value(point["a"])
-            write_point(
-                dataclasses.replace(runs[key], **dict(altered).get(key, {})), tmp_path / study.run_file(**point)
-            )
+            values = {**dict(altered).get(key, {})}
+            if "mean_distance" in values:
+                values["batch_mean_distance"] = np.full_like(runs[key].batch_mean_distance, values["mean_distance"])
+            write_point(dataclasses.replace(runs[key], **values), tmp_path / study.run_file(**point))
         return grid, summarize_kinds(grid, attractors_of(study, **reached))
 
     return compared

@@ -70,7 +70,7 @@ def at_all_values(attractors):
     values["in_grid"] = "value", [1] * len(A) + [-1]
     for name, low in (("lifetime_low", 1e5), ("lifetime_high", np.inf)):
         values[name] = xr.where(values["kind"] == MotionKind.CHAOTIC, low, np.nan)
-    return values.assign_attrs(refine_longest_period=500.0)
+    return values.assign_attrs(refine_longest_period=500.0, refine_resolution=1e-4)
 
 
 @pytest.fixture(scope="module")

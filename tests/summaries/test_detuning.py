@@ -6,6 +6,7 @@ from scipy.linalg import eigh
 
 from burridge_knopoff import Chain, ChainState, Model, law_of
 from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.summaries.detuning import DetunedMotion, detuned_motion
 from burridge_knopoff.summaries.one_frequency import has_one_frequency
@@ -44,10 +45,23 @@ def test_blocks_moved_by_springs_alone_keep_one_frequency_but_are_not_locked(det
     assert motion.frequency[[0, 2]] == pytest.approx(np.sqrt(squares[largest]) / (2.0 * np.pi), abs=1e-9)
     assert not attracts(motion)
     assert (np.abs(motion.exponent) < 1e-3).all()
+    # The longest window tells these exponents from those of a phase that is locked weakly.
+    assert 3.0 * motion.exponent_error[2] < MotionSettings().zero_exponent
     ratio = shapes[2, largest] / shapes[0, largest]
     assert motion.end_ratio == pytest.approx(abs(ratio), abs=1e-6)
     assert motion.end_phase == pytest.approx(180.0 if ratio < 0.0 else 0.0, abs=1e-4)
     assert motion.mode_share[largest] == pytest.approx(1.0, abs=1e-9)
+
+
+def test_a_weakly_stable_phase_is_resolved_by_a_longer_window() -> None:
+    """Branch 2 at a = 0.0925: a window of 4000 gives −8.5e-4 ± 4.1e-4, one of 512,000 −7.69e-4 ± 1.2e-5."""
+    model = Model(Chain(3), law_of("nonlinear", 0.0925))
+    start = ChainState(np.array([0.0618, 0.0135, -0.0271]), np.array([0.1925, 0.1088, 0.0417]), np.zeros(3, bool))
+    motion = detuned_motion(model, start, 0.3, 3)
+    assert attracts(motion)
+    assert motion.exponent[2] == pytest.approx(-7.69e-4, abs=3.0 * motion.exponent_error[2])
+    assert motion.exponent_error[2] < 2.5e-4
+    assert motion.frequency == pytest.approx(0.21019957, abs=1e-8)
 
 
 def antiphase(law: str, a: float) -> tuple[Model, ChainState]:

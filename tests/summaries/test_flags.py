@@ -29,7 +29,7 @@ SLOT = {
     "slow": {-1: "none", **YES_NO},
 }
 EXPECTED = {
-    "runs": {"mirror_symmetric": YES_NO, "status": STATUS},
+    "runs": {**dict.fromkeys(("mirror_symmetric", "settles", "drifts", "stops"), YES_NO), "status": STATUS},
     "agreement": {**AGREEMENT, "settled": VERDICT},
     "attractors": {**SLOT, "sliding_attracts": YES_NO},
     "refined": {**SLOT, "in_grid": YES_NO},
@@ -42,6 +42,8 @@ EXPECTED = {
         "motion_after": MOTION,
         "turns": VERDICT,
         "orbit_stable": VERDICT,
+        "torus_kind": MOTION,
+        "torus_end": BIFURCATION,
     },
     "lyapunov": {"run_kind": MOTION, "unstable": YES_NO, "status": STATUS},
     "mean_distance": {"synchronized": YES_NO, "status": STATUS},
@@ -49,6 +51,8 @@ EXPECTED = {
         "status": {0: "found", 1: "neutral", 2: "not_found", 3: "not_three_blocks"},
         "bifurcation_kind": BIFURCATION,
         "bifurcation_side": {-1: "undetermined", 0: "subcritical", 1: "supercritical"},
+        "attracts_within_synchrony": VERDICT,
+        "critical_stability": {-1: "undetermined", 0: "unstable", 1: "lost", 2: "gained"},
     },
     "solvers": {"status": {-1: "no_such_solver", **STATUS}},
     "two_blocks": {**AGREEMENT, "one_block_kind": MOTION},

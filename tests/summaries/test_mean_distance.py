@@ -54,6 +54,11 @@ def test_slips_of_the_linearized_law_are_a_multiple_of_the_driver_at_one_a():
 
 def with_section(trajectory, velocity, direction, **values):
     section = {"velocity": velocity, "direction": direction, "time": np.arange(len(velocity), dtype=float)}
+    values["batch_mean_distance"] = np.full_like(trajectory.batch_mean_distance, values["mean_distance"])
+    # A start in one and the same state follows each crossing.
+    states, ones = np.zeros((len(velocity), trajectory.model.blocks)), np.ones(len(velocity), np.int8)
+    events = {"time": section["time"] + 0.25, "block": ones, "kind": ones, "position": states, "velocity": states}
+    values |= {f"event_{key}": item for key, item in events.items()}
     return dataclasses.replace(trajectory, **{f"crossing_{key}": item for key, item in section.items()}, **values)
 
 

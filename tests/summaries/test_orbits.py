@@ -19,7 +19,7 @@ from burridge_knopoff.periodic_orbits.synchronized_bifurcations import (
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries import orbits
 from burridge_knopoff.summaries.amplitude import sweep
-from burridge_knopoff.summaries.orbit_flags import BifurcationSide
+from burridge_knopoff.summaries.orbit_flags import BifurcationSide, CriticalStability
 from burridge_knopoff.summaries.orbits import COMPARISON, effective_a, summarize
 from tests.normal_forms import CRITICAL, antisymmetric, orbit_at
 
@@ -64,6 +64,35 @@ def test_the_bifurcation_follows_from_the_orbits(dataset):
     assert (dataset["amplitude_exponent_error"] < 1e-6).all()
     assert (dataset["hysteresis"] < 1e-9).all()
     assert (dataset["sweep_asymmetry"].sel(sweep_offset=dataset["sweep_offset"] > 0) > 4e-3).all()
+
+
+def test_the_papers_orbit_loses_its_stability_at_a_c(dataset):
+    assert (dataset["critical_stability"] == CriticalStability.LOST).all()
+    assert dataset["attracts_within_synchrony"].values.tolist() == [[-1, 1, 1]] * 2
+
+
+def test_a_c_of_an_orbit_that_repels_symmetric_perturbations_is_no_end_of_synchrony():
+    """At coupling 1.5 it is 0.26574379590, where the largest modulus of the symmetric multipliers is 2.1."""
+    unstable = summarize(models(("linearized",), chain=Chain(3, coupling=1.5)), [0.02, 0.1])
+    assert unstable["critical_a"].item() == pytest.approx(0.26574379590, abs=1e-11)
+    assert unstable["critical_stability"].item() == CriticalStability.UNSTABLE
+    attracts, symmetric = (
+        unstable["attracts_within_synchrony"].values[0],
+        unstable["multiplier"].sel(mode="symmetric_1"),
+    )
+    assert attracts.tolist() == (np.hypot(*symmetric.transpose("part", ...).values)[0] < 1.0).astype(int).tolist()
+    assert attracts[1] == 0
+    # A run would leave the orbit.
+    assert np.isnan(unstable["sweep_asymmetry"]).all()
+    assert np.isnan(unstable["hysteresis"]).all()
+    assert "no end of synchrony" in orbits.digest(unstable)
+
+
+@pytest.mark.parametrize(("slope", "expected"), [(3.0, CriticalStability.LOST), (-3.0, CriticalStability.GAINED)])
+def test_stability_may_be_lost_or_gained_as_a_grows(slope, expected):
+    form = antisymmetric(lambda d, mu: (1.0 + slope * mu) * d, lambda d, mu: 1.0 + slope * mu)
+    family = KnownOrbits(orbit_at(form, -0.01, 0.0, Symmetry.SYNCHRONIZED, Chain(2)))
+    assert orbits.critical_stability(family, CRITICAL) == expected
 
 
 def test_the_transition_is_recomputed(dataset):
@@ -139,6 +168,7 @@ def test_a_missing_orbit_is_a_flag(blocks, v, status):
     assert (none["bifurcation_side"] == -1).all()
 
 
+@pytest.mark.slow
 def test_other_laws_are_included(dataset, monkeypatch):
     """The laws have the order of the study, and the comparison of the paper's laws is missing."""
     # Branching orbits are computed for the paper's laws only.

@@ -97,6 +97,12 @@ class Study:
         }
 
 
+def snakemake_of_checkout(folder: Path) -> str:
+    """Return the beginning of a command that continues a study in a folder by the Snakefile of this checkout."""
+    checkout = os.path.relpath(REPOSITORY, folder.resolve())
+    return f"snakemake -c2 -s {checkout}/Snakefile --workflow-profile {checkout}/profiles/default"
+
+
 def run_once(factory: pytest.TempPathFactory, name: str, config: str) -> Study:
     """Return a study that has run to its end, once for all workers, with its `output`."""
     source = made_once(

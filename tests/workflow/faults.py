@@ -146,14 +146,17 @@ def differences(study: Study, other: Study, *folders: str) -> list[str]:
     """Return the files in which two studies differ, and temporary files."""
     mine, theirs = (tree.files(*(folders or COMPARED)) for tree in (study, other))
     if not folders:
-        mine["report.html"], theirs["report.html"] = map(report_without_times, (study, other))
+        pages = (next((tree.folder / "results").glob("*/report.html")) for tree in (study, other))
+        mine["report.html"], theirs["report.html"] = map(without_times, pages)
     return sorted(name for name in mine.keys() | theirs.keys() if mine.get(name) != theirs.get(name))
 
 
-def report_without_times(study: Study) -> bytes:
-    """Return the report of a study without its section on the seconds and the memory of jobs."""
-    page = next((study.folder / "results").glob("*/report.html")).read_bytes()
-    whole, count = re.subn(rb'<section id="run-time".*?</section>', b"", page, flags=re.DOTALL)
+def without_times(path: Path) -> bytes:
+    """Return the content of a file, of a report without its section on the seconds and the memory of jobs."""
+    content = path.read_bytes()
+    if path.name != "report.html":
+        return content
+    whole, count = re.subn(rb'<section id="run-time".*?</section>', b"", content, flags=re.DOTALL)
     assert count == 1
     return whole
 
@@ -168,15 +171,20 @@ def check_end(study: Study, other: Study, *targets: str, folders: Collection[str
 def broken(study: Study, faults: Mapping[str, str]) -> dict[str, str]:
     """Return the environment in which each Python process first runs the code of a key that its command contains.
 
-    A script of Snakemake contains the names of its files: its text counts as part of the command.
+    A script runs the code of a key that the name of its log contains, when it opens that.
     """
     folder = study.folder / "faults"
     folder.mkdir()
-    lines = ["import os, signal, sys", "words = ' '.join(sys.orig_argv)"]
-    lines += ["if sys.orig_argv[-1].endswith('.py'):", "    words += open(sys.orig_argv[-1]).read()"]
-    for words, code in faults.items():
-        lines += [f"if {words!r} in words:", *(f"    {line}" for line in code.strip().splitlines())]
-    (folder / "sitecustomize.py").write_text("\n".join(lines))
+    text = f"""
+import os, signal, sys
+faults = {dict(faults)!r}
+def begin(words):
+    for key in [key for key in faults if key in words]:
+        exec(faults.pop(key), globals())
+sys.addaudithook(lambda event, values: event == "open" and values[1] == "w" and begin(str(values[0])))
+begin(" ".join(sys.orig_argv))
+"""
+    (folder / "sitecustomize.py").write_text(text)
     return {"PYTHONPATH": os.pathsep.join([str(folder), study.environment()["PYTHONPATH"]])}
 
 

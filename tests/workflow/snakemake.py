@@ -1,4 +1,4 @@
-"""Runs of Snakemake in forks of a process that has imported it, and of its scripts in forks of another one.
+"""Runs of Snakemake in forks of a process that has imported it, with servers of scripts in forks of another one.
 
 Tests of signals that a program handles, and those on a terminal, start the program itself.
 """
@@ -19,10 +19,10 @@ from pathlib import Path
 #: Of the package and of the display, in this checkout.
 SOURCES = Path(__file__).parents[2] / "src"
 
-#: Executes each call from a socket in a fork, and answers with the number of the process and its exit code.
-#: Several may run at a time; another fork waits for each of them.
+#: Executes each call from a socket in a fork, and answers with the number of the process and its exit code. Another
+#: socket may come with it. Several may run at a time; another fork waits for each of them.
 SERVE = """
-import gc, json, os, signal, socket, sys
+import contextlib, gc, json, os, signal, socket, sys
 def become(call):
     os.chdir(call["folder"])
     os.environ.clear()
@@ -34,48 +34,51 @@ def serve(calls, run):
     # Otherwise each fork searches everything that is imported when it ends, which takes longer than most of them run.
     gc.freeze()
     while True:
-        message, answering, _, _ = socket.recv_fds(calls, 1 << 20, 1)
+        message, numbers, _, _ = socket.recv_fds(calls, 1 << 20, 2)
         if not message:
             break
+        answering, *received = numbers
         if not os.fork():
             signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-            call, answers = json.loads(message), open(*answering, "w", buffering=1)
+            call, answers = json.loads(message), open(answering, "w", buffering=1)
             # A signal to the group of a Snakemake also reaches its scripts.
             os.setpgid(0, call["group"])
             process = os.fork()
             if not process:
                 become(call)
-                run(call)
+                run(call, *received)
                 sys.exit()
             print(process, file=answers)
-            print(os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]), file=answers)
+            code = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
+            # Of a server of scripts the Snakemake may have ended before.
+            with contextlib.suppress(BrokenPipeError):
+                print(code, file=answers)
             os._exit(0)
-        os.close(*answering)
+        for number in (answering, *received):
+            os.close(number)
 calls, *others = (socket.socket(fileno=int(number)) for number in sys.argv[1:])
 """
 
-#: Lets each script be run by the other process. A fork that has imported the project serves the runs of this checkout;
-#: runs with the sources of another one start without imports.
+#: Takes the server of its scripts from the other process. A fork that has imported the project serves the runs of this
+#: checkout; runs with the sources of another one start without imports.
 SNAKEMAKE = f"""{SERVE}
-import subprocess
 import snakemake.cli, snakemake.dag, snakemake.report.html_reporter, snakemake.script
 import nbformat, netCDF4, numpy, scipy.linalg, scipy.optimize, smart_open, xarray
-from snakemake.benchmark import benchmarked
-def execute_script(self, name, edit=False):
+def start():
+    requests, its_requests = socket.socketpair()
     answers, answering = os.pipe()
-    call = dict(command=[name], folder=os.getcwd(), environment=dict(os.environ), group=os.getpgrp())
-    socket.send_fds(scripts, [json.dumps(call).encode()], [answering])
+    call = dict(command=["script_server"], folder=os.getcwd(), environment=dict(os.environ), group=os.getpgrp())
+    socket.send_fds(scripts, [json.dumps(call).encode()], [answering, its_requests.fileno()])
     os.close(answering)
-    with open(answers) as answers, benchmarked(int(answers.readline()), self.bench_record):
-        code = int(answers.readline() or 1)
-    if code:
-        raise subprocess.CalledProcessError(code, name)
-snakemake.script.PythonScript.execute_script = execute_script
+    its_requests.close()
+    return requests, int(os.read(answers, 64).split()[0])
 def run(call):
     if call["own_group"]:
         os.setpgid(0, 0)
     for number, name in enumerate([os.devnull, *call["written"]]):
         os.dup2(os.open(name, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666), number)
+    import burridge_knopoff.script_server
+    burridge_knopoff.script_server.start = start
     sys.exit(snakemake.cli.main(call["command"][1:]))
 calls_here, scripts, scripts_here = others
 if not os.fork():
@@ -89,9 +92,9 @@ if not os.fork():
 serve(calls, run)
 """
 
-#: Likewise, scripts of this checkout start with the project imported, those of another one only with its requirements.
+#: Likewise, servers of this checkout start with the project imported, those of another one only with its requirements.
 SCRIPTS = f"""{SERVE}
-import importlib, pkgutil, runpy
+import importlib, pkgutil
 import matplotlib.backends.backend_agg, matplotlib.backends.backend_pdf, matplotlib.patches, matplotlib.ticker
 import flint, jinja2, netCDF4, numpy, plotly.offline, scipy.optimize, scipy.signal, scipy.spatial, xarray
 import snakemake.script
@@ -103,7 +106,11 @@ if not os.fork():
             importlib.import_module(f"burridge_knopoff.{{room}}.{{module.name}}")
     sys.path.pop(0)
     calls = calls_here
-serve(calls, lambda call: runpy.run_path(sys.argv[0], run_name="__main__"))
+def run(call, number):
+    import burridge_knopoff.script_server
+    signal.pthread_sigmask(signal.SIG_BLOCK, {{signal.SIGINT}})
+    burridge_knopoff.script_server.serve(socket.socket(fileno=number))
+serve(calls, run)
 """
 
 

@@ -1,6 +1,7 @@
 """Broken configs and command lines: one line that names the error, and nothing written."""
 
 import json
+import os
 import shutil
 import subprocess
 from pathlib import Path
@@ -224,3 +225,50 @@ def test_input_refused_before_snakemake_is_refused_by_the_snakefile_too(tmp_path
     assert run.returncode == 1
     assert "study.yaml: __use_yte__: " in run.stderr
     assert not (tmp_path / "results").exists()
+
+
+IN_PLACE = {
+    "a pipe in place of a point": ("points/linearized/minus/a0.0500.nc", os.mkfifo),
+    "a folder in place of a point": ("points/linearized/minus/a0.0500.nc", Path.mkdir),
+    "a pipe in place of a benchmark": ("benchmarks/runs.tsv", os.mkfifo),
+    "a pipe in place of a log": ("logs/simulate/linearized/minus/a0.0500.log", os.mkfifo),
+    "a pipe in place of the record": ("study.json", os.mkfifo),
+    "a folder in place of a figure": ("figures/motion_minus.png", Path.mkdir),
+}
+
+
+@pytest.mark.parametrize("case", IN_PLACE)
+def test_what_is_no_file_in_the_place_of_one_is_refused_before_the_run(tmp_path, case):
+    """A job would wait for the reader of a pipe, and Snakemake takes a folder for a result."""
+    name, make = IN_PLACE[case]
+    study = Study(tmp_path)
+    path = tmp_path / "results/tiny" / name
+    path.parent.mkdir(parents=True)
+    make(path)
+    check(study.run("points"), tmp_path, ["results", "study.yaml"], [f"results/tiny/{name}: it is ", "remove it"])
+
+
+#: {case: (name of the number of a law, what the grid varies, place of the error)}
+NAMES = {
+    "a variable of lyapunov.nc": ("period", "period", "grid: "),
+    "a variable of runs.nc": ("mean_distance", "mean_distance", "grid: "),
+    "a variable of a point": ("event_block", "event_block", "grid: "),
+    "a dimension": ("level", "level", "grid: "),
+    "the chain's": ("mass", "", "laws.mine.mass: "),
+    "the driver's": ("v", "", "laws.mine.v: "),
+}
+
+
+@pytest.mark.parametrize("case", NAMES)
+def test_a_number_of_a_law_has_no_name_of_a_result_or_of_the_chain(tmp_path, case):
+    name, varied, place = NAMES[case]
+    config = {
+        "study": "named",
+        "initial": {"minus": {}},
+        "laws": {"mine": {"formula": f"1/(1 + a*u*{name})", name: 1.0}},
+        "grid": {"a": [0.08]},
+    }
+    if varied:
+        config["grid"][varied] = [0.1, 0.2]
+    study = Study(tmp_path, json.dumps(config))
+    check(study.run("-n"), tmp_path, ["study.yaml"], [place, name, "another name"])

@@ -7,7 +7,9 @@ import sys
 import pytest
 
 from burridge_knopoff.outputs import outputs
+from tests.check.conftest import change_record
 from tests.workflow.conftest import REPOSITORY, copied
+from tests.workflow.faults import without_times
 
 SCRIPTS = REPOSITORY / "workflow/scripts"
 #: Of stages that the finished study does not have, or has not made.
@@ -38,7 +40,8 @@ def test_a_script_writes_the_files_of_its_job(copy, tmp_path, name):
     files = {path.relative_to(tmp_path) for path in tmp_path.rglob("*") if path.is_file() and "cache" not in path.parts}
     assert len(files) == len(outputs().get(name, outputs()["figure_sketch"]).names.split())
     for file in files:
-        assert (tmp_path / file).read_bytes() == (copy.folder / "results/tiny" / file).read_bytes(), file
+        written, expected = (without_times(folder / file) for folder in (tmp_path, copy.folder / "results/tiny"))
+        assert written == expected, file
     assert times(copy.folder / "results") == before
 
 
@@ -57,6 +60,36 @@ def test_a_named_file_is_written_into_a_temporary_folder(copy, tmp_path):
     assert f"{name}: written into {folder}\n" in run.stderr
     assert "searched from initial states: " in run.stderr
     assert (folder / name).read_bytes() == (copy.folder / "results/tiny" / name).read_bytes()
+
+
+#: {file of a received folder: its content, which leaves a mark if it runs}
+EVIL = {
+    "Snakefile": "open('evil', 'w')\n",
+    "workflow/Snakefile": "open('evil', 'w')\n",
+    "default/config.yaml": "default-resources:\n  mem_mb: \"open('evil', 'w') and 100\"\n",
+    "profiles/default/config.yaml": "default-resources:\n  mem_mb: \"open('evil', 'w') and 100\"\n",
+    "other/Snakefile": "open('evil', 'w')\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [(None, 0), ("-s ./Snakefile --configfile study.yaml", 0), ("-s other/Snakefile", 1)],
+)
+def test_no_code_of_a_received_folder_runs(finished, tmp_path, arguments, code):
+    """Neither its Snakefiles nor the expressions of its profiles, whatever its record names."""
+    study = copied(finished.folder, tmp_path / "received")
+    for name, content in EVIL.items():
+        (study.folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (study.folder / name).write_text(content)
+    if arguments:
+        change_record(study.folder / "results/tiny", lambda record: record.update(arguments=arguments))
+    run = by_hand(study, "agreement", "--out", str(tmp_path / "out"))
+    assert run.returncode == code, run.stderr
+    if code:
+        assert run.stderr.startswith("agreement.py: results/tiny/summary/agreement.csv: no rule of ")
+        assert run.stderr.count("\n") == 1
+    assert not [*tmp_path.rglob("evil")]
 
 
 REFUSED = {

@@ -30,6 +30,7 @@ def study(tmp_path_factory):
     return study
 
 
+@pytest.mark.slow
 def test_the_target_makes_its_files_and_no_points(study):
     paths = set(study.files("chains", "summary", "figures", "points"))
     assert paths == {

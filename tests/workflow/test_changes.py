@@ -87,7 +87,7 @@ KEYS = [
     ({"step": 0.002, "basins.cores": 2, "chains.time_limit": 900}, ()),
     (
         {"synchronization_threshold": 1.0e-5},
-        ("mean_distance", "lyapunov", "agreement", "attractors_of_law", "two_blocks"),
+        ("runs", "mean_distance", "lyapunov", "agreement", "attractors_of_law", "two_blocks"),
     ),
     (
         {"motion.zero_exponent": 1.0e-3, "motion.longest_period": 1000.0},

@@ -239,3 +239,30 @@ def test_something_else_in_the_place_of_results(study):
     results.mkdir()
     (results / "tiny").symlink_to("nowhere")
     stops_at_once(study, "results/tiny is a link to nowhere, which does not exist")
+
+
+def test_sigterm_ends_a_run_while_a_thread_waits(study):
+    """For the reader of a pipe that has come into the place of a benchmark."""
+    process = begin(study, "summary")
+    assert wait_for((study.folder / "results/tiny/logs/simulate").exists, process)
+    benchmarks = study.folder / "results/tiny/benchmarks"
+    benchmarks.mkdir(exist_ok=True)
+    os.mkfifo(benchmarks / "runs.tsv")
+    assert wait_for((study.folder / "results/tiny/summary/runs.nc").exists, process)
+    os.kill(process.pid, signal.SIGTERM)
+    assert process.wait(timeout=120) == 1
+    (benchmarks / "runs.tsv").unlink()
+    study.ok("results/tiny/summary/runs.nc")
+
+
+def test_a_few_interrupts_at_once_are_one(study):
+    process = begin(study, "points")
+    assert wait_for((study.folder / "results/tiny/logs/simulate").exists, process)
+    for _ in range(3):
+        os.kill(process.pid, signal.SIGINT)
+        time.sleep(0.03)
+    assert process.wait() == 1
+    screen = (study.folder / "screen").read_text()
+    assert "study tiny: stopped" in screen
+    assert "Traceback" not in screen
+    study.ok("points")

@@ -204,6 +204,7 @@ def test_without_hooks(study):
     assert (study.folder / POINTS[0]).exists()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="no choice of the cores of a process")
 def test_an_estimate_counts_the_cores_that_are_there(study):
     """More cores than that make no job faster."""

@@ -63,6 +63,7 @@ def test_a_study_to_which_no_proof_applies_says_so_and_continues(tmp_path, other
     assert not re.search(r"^proof +1$", planned, re.MULTILINE)
 
 
+@pytest.mark.slow
 def test_claims_and_summaries_request_the_proof(study):
     for target in ("summary", "results/tiny/summary/claims.json"):
         assert re.search(r"^proof +1$", study.ok(target, "-n", "-p", "--quiet", "rules"), re.MULTILINE)

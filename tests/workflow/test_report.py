@@ -12,7 +12,7 @@ from playwright.sync_api import sync_playwright
 
 from burridge_knopoff.figures.description import figure_descriptions
 from tests.optional import launch_chromium, needs
-from tests.workflow.faults import report_without_times
+from tests.workflow.faults import without_times
 
 CATEGORIES = {
     "Claims": ["claims.csv"],
@@ -115,4 +115,5 @@ def test_the_report_of_the_study_differs_between_runs_only_in_what_the_jobs_took
     copy.ok("results/tiny/report.html")
     assert b"12345.6" in page.read_bytes()
     assert page.read_bytes() != before
-    assert report_without_times(copy) == report_without_times(finished)
+    pages = (study.folder / "results/tiny/report.html" for study in (copy, finished))
+    assert len({*map(without_times, pages)}) == 1

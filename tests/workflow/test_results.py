@@ -281,7 +281,7 @@ def files_of(results):
 
 @pytest.mark.parametrize(("key", "name"), [("initial", "plus"), ("laws", "nonlinear"), ("a", "0.0800")])
 def test_leftovers_of_a_larger_study_are_recognized(results, tmp_path, key, name):
-    """`bk prune` recognizes all files of a state, a law or an a that is no longer in the config."""
+    """`bk check` lists all files of a state, a law or an a that is no longer in the config."""
     record, study = recorded_study(results)
     assert leftovers(results, study) == []
     config = {**record["given"], "initial": {"minus": {}, "plus": {}}, "laws": {"linearized": {}, "nonlinear": {}}}

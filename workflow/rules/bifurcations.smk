@@ -18,7 +18,7 @@ rule bifurcations_of_law:
         runtime=60,
         cpus_per_task=all_threads,
     params:
-        config=uses("bifurcations_of_law", MODEL_OF_LAW, "a"),
+        config=uses("bifurcations_of_law", MODEL_OF_LAW, MOTION, "a", "attractors"),
         sources=sources("bifurcations_of_law"),
     message:
         "bifurcations of the branches of attractors, {wildcards.law} law"

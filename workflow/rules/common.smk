@@ -9,6 +9,10 @@ MODELS = [*MODEL_KEYS]
 MODEL_OF_LAW = ["laws.{law}", *MODELS[1:]]
 MOTION = ["motion", "synchronization_threshold", "section"]
 
+SERVER = ScriptServer()
+# The rules call it by this name.
+script = internals.script_in_fork(workflow, script, SERVER, ROOT / "workflow/scripts")
+
 
 def uses(rule, *keys):
     """Return a params function: the keys of the config that a job of a rule uses, with their values.

@@ -65,6 +65,7 @@ def prepare_results():
     for _, job, _ in internals.planned_jobs(workflow):
         remove_links(*job.log, *([job.benchmark] if job.benchmark else []))
     internals.start_no_timers(workflow)
+    internals.end_on_termination(workflow, STOP, SERVER)
     PLAN.announce()
 
 
@@ -88,6 +89,10 @@ if internals.is_main_process(workflow):
     # Snakemake would warn of each missing file.
     if only_reports(sys.argv[1:]) and not Path(RESULTS).is_dir():
         sys.exit(f"--report: {RESULTS} is missing: run the study first, by the same command without --report")
+    try:
+        check_places(Path(RESULTS), STUDY)
+    except OSError as error:
+        sys.exit(escape_unprintable(f"{error}"))
     IS_DRY_RUN, OTHER_RUN = internals.is_dry_run(workflow), is_locked(Path(RESULTS))
     if not OTHER_RUN:
         remove_marks(runs_jobs(sys.argv[1:]) and not IS_DRY_RUN)

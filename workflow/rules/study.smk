@@ -20,6 +20,7 @@ except KernelError as error:
 
 from burridge_knopoff.attractors.settings import GIVEN_STATE_KEYS
 from burridge_knopoff.check.changes import changes
+from burridge_knopoff.check.leftovers import check_places
 from burridge_knopoff.check.study import is_locked
 from burridge_knopoff.claims.paper import CLAIMS, READS
 from burridge_knopoff.figures.description import figure_descriptions
@@ -52,12 +53,14 @@ from burridge_knopoff.point_job import (
     run_point_job,
     stop_on_interrupt,
 )
+from burridge_knopoff.script_server import ScriptServer
 from burridge_knopoff.study.remarks import (
     change_remarks,
     override_remarks,
     remarks,
 )
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
+from burridge_knopoff.summaries.parameter_names import check_parameter_names
 from snakemake_logger_plugin_study import LogHandler, internals
 from snakemake_logger_plugin_study.command_line import (
     check_one_config,
@@ -100,6 +103,7 @@ try:
     GIVEN = copy.deepcopy(WRITTEN)
     update_config(GIVEN, OVERRIDES)
     STUDY = load_study(GIVEN, display_path(CONFIG_FILE), WRITTEN)
+    check_parameter_names(STUDY, display_path(CONFIG_FILE))
     RESULTS = f"results/{STUDY.name}"
     # Snakemake would report these errors with a traceback. Results may be read-only as long as no job runs.
     check_folder(os.path.abspath(".snakemake"))

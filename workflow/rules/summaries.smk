@@ -16,7 +16,7 @@ rule runs:
     resources:
         runtime=30,
     params:
-        config=uses("runs", POINTS, "motion.period_tolerance", "motion.longest_period"),
+        config=uses("runs", POINTS, "motion.period_tolerance", "motion.longest_period", "synchronization_threshold"),
         sources=sources("runs"),
     message:
         "summary: runs"

@@ -1,10 +1,13 @@
 """The job of a script that is run by hand, on a finished study.
 
-    python workflow/scripts/agreement.py [results/paper/summary/agreement.nc] [--out FOLDER]
+    python workflow/scripts/agreement.py [results/paper/summary/agreement.nc] [--out FOLDER] [--snakefile FILE]
 
 The file is one that the script makes, by default the first one of the study that ran last. The script reads what its
 job reads, and writes into a new temporary folder or into FOLDER: in the results, a new file would make everything that
 depends on it out of date. Messages and errors are printed. It runs in a debugger and by `%run` in a notebook as well.
+
+Results may come from others: the plan is that of the Snakefile of this checkout, without a profile. That of a workflow
+that imports the study is named by --snakefile, and its code runs.
 """
 
 import argparse
@@ -15,13 +18,12 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from burridge_knopoff.outputs import refusal, rule_of, study_files
-from burridge_knopoff.provenance.record import NAME, study_folder
+from burridge_knopoff.provenance.record import CHECKOUT, NAME, SNAKEFILE, imports_study, study_folder
 from burridge_knopoff.study.recorded import recorded_study
 from snakemake_logger_plugin_study.dry_run import dry_run
 from snakemake_logger_plugin_study.internals import requested_jobs
 
 SCRIPT = Path(sys.modules["__main__"].__file__).resolve()
-SNAKEFILE = SCRIPT.parents[2] / "Snakefile"
 
 
 def by_hand(arguments):
@@ -29,6 +31,7 @@ def by_hand(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("file", nargs="?", type=Path)
     parser.add_argument("--out", type=Path, metavar="FOLDER")
+    parser.add_argument("--snakefile", type=Path, metavar="FILE")
     options = parser.parse_args(arguments)
     results = study_folder(options.file) if options.file else last_study()
     if not results:
@@ -44,9 +47,15 @@ def by_hand(arguments):
     folder = (options.out or Path(tempfile.mkdtemp(prefix=f"{SCRIPT.stem}-"))).resolve()
     if folder.is_relative_to(results.resolve()):
         raise ValueError(f"--out: got {options.out}, expected a folder outside the results")
+    root = results.parents[1]
+    if imports_study(record, root) and not options.snakefile:
+        raise ValueError(
+            f"--snakefile: missing, expected {record['config_file']}, which imports the study: it would run"
+        )
+    snakefile = (options.snakefile or CHECKOUT / SNAKEFILE).resolve()
     # Snakemake names files by their paths from the folder that contains `results`.
-    os.chdir(results.parents[1])
-    job = planned_job(f"results/{results.name}/{name}", record)
+    os.chdir(root)
+    job = planned_job(f"results/{results.name}/{name}", snakefile, record["arguments"])
     print(f"{name}: written into {folder}", file=sys.stderr)
     given = {key: getattr(job, key) for key in ("input", "output", "params", "wildcards", "threads", "resources")}
     return SimpleNamespace(**given, rule=job.rule.name, log=[], folder=folder)
@@ -63,18 +72,17 @@ def last_study():
     return records[-1].parent if records else None
 
 
-def planned_job(file, record):
-    """Return the job that makes a file, by Snakemake's own plan."""
-    option, snakefile, *others = words = [*record["arguments"], "", ""]
-    is_recorded = option == "-s"
-    # A study that another workflow imports has the Snakefile of that workflow in place of a config file.
-    if not (is_recorded and Path(snakefile).resolve() == Path(record["config_file"]).resolve()):
-        words = ["-s", f"{SNAKEFILE}", *(others if is_recorded else words)]
-    plan, written = dry_run([file, *filter(None, words)])
+def planned_job(file, snakefile, words):
+    """Return the job that makes a file, by Snakemake's own plan with the recorded words of a run."""
+    others = words[2:] if words[:1] == ["-s"] else words
+    plan, written = dry_run([file, "-s", f"{snakefile}", "--profile", "none", "--workflow-profile", "none", *others])
     # A DAG without jobs to run counts as false.
     if not plan or plan.workflow.dag is None:
         raise ValueError(written.strip())
-    return next(job for job in requested_jobs(plan.workflow) if file in job.output)
+    for job in requested_jobs(plan.workflow):
+        if file in job.output:
+            return job
+    raise ValueError(f"{file}: no rule of {snakefile} makes it, expected the Snakefile of its run as --snakefile")
 
 
 try:

@@ -8,4 +8,5 @@ job = Job(snakemake)
 
 from burridge_knopoff.summaries.runs import summarize
 
-job.write(summarize(job.study, job.results, **job.config["motion"]))
+threshold = job.config["synchronization_threshold"]
+job.write(summarize(job.study, job.results, **job.config["motion"], synchronization_threshold=threshold))

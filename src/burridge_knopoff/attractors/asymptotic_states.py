@@ -15,7 +15,7 @@ import numpy as np
 
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.labels import UNDETERMINED, advance, label
-from burridge_knopoff.attractors.lifetime import EXPOSURE, lifetimes
+from burridge_knopoff.attractors.lifetime import EXPOSURE
 from burridge_knopoff.attractors.search import find_attractors
 from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
 from burridge_knopoff.model.initial import InitialState
@@ -70,8 +70,7 @@ def asymptotic_states(
     """
     settings = replace(settings, samples=0)
     attractors, labels = find_attractors(model, settings, motion, starts=initial, start=start)
-    lives = lifetimes(model, attractors, settings)
-    lasting = [index for index, life in enumerate(lives) if life is None or life.is_longer_than(settings.lifetime)]
+    lasting = [k for k, attractor in enumerate(attractors) if attractor.motion.kind != MotionKind.TRANSIENT_CHAOS]
     starts = [model.begin(state, start) for state in initial]
     # States in transient chaos, and those that the search has given up, are followed up to the limit of labels.
     late = [k for k, index in enumerate(labels.tolist()) if index not in lasting]

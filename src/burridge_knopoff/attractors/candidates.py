@@ -6,28 +6,35 @@ radius have to come back.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 from burridge_knopoff.attractors.attractor import CLOSE_RETURNS, Attractor, required_returns
 from burridge_knopoff.attractors.capture_radius import SMALLEST_RADIUS, TINY_RADIUS, Capture, embedded_orbits
 from burridge_knopoff.attractors.convergence import Convergence
 from burridge_knopoff.attractors.slow_set import SLOW_TIME, sample_slow_set
-from burridge_knopoff.motion.kind import CHAOS
-from burridge_knopoff.motion.observables import SteadyMotion, sliding_motion
-from burridge_knopoff.motion.section_returns import Returns, ReturnSection
+from burridge_knopoff.model.model import ChainState
+from burridge_knopoff.motion.kind import CHAOS, regular_kind, synchronization_distance
+from burridge_knopoff.motion.limit_cycle import limit_cycle
+from burridge_knopoff.motion.mirror import pair_distances
+from burridge_knopoff.motion.observables import SteadyMotion, is_on_attractor, sliding_motion
+from burridge_knopoff.motion.section_returns import Returns, ReturnSection, visit
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbit
 from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
 # ⟨J⟩, in resolutions, below which a motion is near synchrony. If it does not attract it is unstable, and not part of a
 # slow set.
 NEXT_TO_SYNCHRONY = 10.0
 
-# Recovery required of synchrony that attracts by its multipliers. Near its loss of stability perturbations decay at a
-# vanishing linear rate, and only the cubic term brings them closer.
+# Recovery required of an orbit that attracts by its multipliers, and distance below 1 of their modulus that is not
+# rounding. Near a loss of stability perturbations decay at a vanishing linear rate.
 SLOW_RECOVERY = 2.0
+CERTAIN_DECAY = 1e-8
 
 
 @dataclass(frozen=True)
@@ -35,11 +42,13 @@ class Candidate:
     """An attractor that may be added, with its mirror image if that is another one.
 
     least : smallest capture radius that it has to have, for v = 0.1; capture : how the radius is determined
+    attracts : whether its multipliers show that it attracts; TINY_RADIUS then replaces a radius below `least`
     """
 
     attractors: Sequence[Attractor]
     least: float
     capture: Capture
+    attracts: bool = False
 
 
 @dataclass(eq=False)
@@ -66,17 +75,26 @@ class Candidates(Convergence):
 
     def add(self, section: Returns) -> bool:
         """Add a converged motion, and its mirror image if different, and return whether they are attractors."""
-        closed = section.has_periodic_spacing(self.tolerance)
-        exact = self.exact_returns(section) if section.section == ReturnSection.MAXIMA and closed else section
-        measured = self.measure(exact) if exact is not None else None
+        measured = self.measure(section)
         if measured is None:
             return False
-        for candidate in self.candidates(*measured):
-            accepted = self.accept(candidate)
-            if accepted is not None:
-                self.attractors = accepted
-                return True
-        return False
+        section, motion = measured
+        if self._add_first(self.candidates(section, motion)):
+            return True
+        return motion.kind not in CHAOS and self.add_slow(section.state())
+
+    def add_slow(self, state: ChainState) -> bool:
+        """Add a periodic orbit next to a state if its multipliers show that it attracts; return whether they do.
+
+        Near its loss of stability a trajectory neither reaches it nor leaves it within the time limit.
+        """
+        return self._add_first(self._slow_orbits(state))
+
+    def _add_first(self, candidates: Iterable[Candidate]) -> bool:
+        """Add the first candidate that attracts, and return whether there is one."""
+        accepted = next(filter(None, map(self.accept, candidates)), None)
+        self.attractors = accepted or self.attractors
+        return accepted is not None
 
     def candidates(self, section: Returns, motion: SteadyMotion) -> Iterator[Candidate]:
         """Yield the attractors to which a converged motion may belong, the first to be accepted being the one."""
@@ -87,7 +105,6 @@ class Candidates(Convergence):
         mirror = self.model.chain.is_mirror_symmetric
         synchronized = mirror and motion.mean_distance < self.motion_settings.synchronization_threshold
         if mirror and stops and not synchronized and motion.mean_distance < self.resolution:
-            yield from self._slow_synchrony()
             return
         enough = required_returns(section, self.tolerance)
         if synchronized:
@@ -131,28 +148,43 @@ class Candidates(Convergence):
             Attractor(self.model, motion.mirrored(), Symmetry.ASYMMETRIC, index, close_returns=enough),
         ]
 
-    def _slow_synchrony(self) -> Iterator[Candidate]:
-        """Yield the synchronized orbit if it attracts by its multipliers, though too slowly for a trajectory.
+    def _slow_orbits(self, state: ChainState) -> Iterator[Candidate]:
+        """Yield the periodic orbits next to a state that attract by their multipliers."""
+        finders = [partial(limit_cycle, self.model, state)]
+        near = NEXT_TO_SYNCHRONY * self.resolution
+        if self.model.chain.is_mirror_symmetric and (pair_distances(state) <= near).all():
+            finders.insert(0, partial(synchronized_orbit, self.model))
+        for find in finders:
+            try:
+                orbit = find()
+                if abs(multipliers(orbit).whole[0]) < 1.0 - CERTAIN_DECAY:
+                    yield from self._on_orbit(orbit)
+            except OrbitError:
+                continue
 
-        Near its loss of stability a trajectory neither reaches it nor leaves it within the time limit.
-        """
-        try:
-            orbit = synchronized_orbit(self.model)
-            leading = abs(multipliers(orbit).whole[0])
-        except OrbitError:
-            return
-        if leading >= 1.0:
-            return
+    def _on_orbit(self, orbit: PeriodicOrbit) -> Iterator[Candidate]:
+        """Yield the motion on a periodic orbit that attracts, unless it is listed."""
         exact = self.classifier(self.settings.transient, self.settings.window).measure(orbit.reference)
-        if exact is None:
+        section = visit(self.model, orbit.reference, 0.0, self.settings.window)
+        if (
+            exact is None
+            or section is None
+            or any(is_on_attractor(section, item.motion, self.resolution, self.tolerance) for item in self.attractors)
+        ):
             return
-        attractor = Attractor(
-            self.model, exact, Symmetry.SYNCHRONIZED, len(self.attractors), close_returns=CLOSE_RETURNS
-        )
-        yield Candidate([attractor], SMALLEST_RADIUS, replace(self.capture, recovery=SLOW_RECOVERY))
+        if not math.isfinite(exact.period):
+            mean = synchronization_distance(exact.mean_distance, self.model.chain.is_mirror_symmetric)
+            scaled = self.motion_settings.scaled_to_velocity(self.model.v)
+            exact = replace(exact, kind=regular_kind(mean, orbit.period, scaled), period=orbit.period)
+        enough = required_returns(section, self.tolerance)
+        if orbit.symmetry == Symmetry.SYNCHRONIZED:
+            new = [Attractor(self.model, exact, Symmetry.SYNCHRONIZED, len(self.attractors), close_returns=enough)]
+        else:
+            new = self._images(exact, orbit.symmetry == Symmetry.SYMMETRIC, enough)
+        yield Candidate(new, SMALLEST_RADIUS, replace(self.capture, recovery=SLOW_RECOVERY), attracts=True)
 
     def accept(self, candidate: Candidate) -> list[Attractor] | None:
-        """Return all attractors including a candidate; None if it does not attract from its smallest radius."""
+        """Return all attractors including a candidate; None if it is not shown to attract."""
         index = len(self.attractors)
         attractors = candidate.capture.bound_radii(
             self.model, [*self.attractors, *candidate.attractors], self.tolerance
@@ -164,5 +196,7 @@ class Candidates(Convergence):
             self.model, attractors, index, candidate.least, self.tolerance, self.settings
         )
         if radius == 0.0:
-            return None
+            if not candidate.attracts:
+                return None
+            radius = min(attractors[index].radius, TINY_RADIUS * self.model.scale)
         return [*attractors[:index], *(replace(item, radius=radius) for item in attractors[index:])]

@@ -13,7 +13,7 @@ from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
 from burridge_knopoff.attractors.slow_set import SLOW_PUSH, SLOW_TIME
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.classification import Classifier
-from burridge_knopoff.motion.kind import CHAOS, periodic_orbit_kind, synchronization_distance
+from burridge_knopoff.motion.kind import CHAOS, regular_kind, synchronization_distance
 from burridge_knopoff.motion.observables import SteadyMotion
 from burridge_knopoff.motion.period import orbit_length
 from burridge_knopoff.motion.section_returns import (
@@ -138,7 +138,11 @@ class Convergence:
         # Uniform sliding that is not among the attractors is unstable.
         if section.section == ReturnSection.SLIDING:
             return None
-        closed, window = section.has_periodic_spacing(self.tolerance), self.measuring_window(section)
+        closed = section.has_periodic_spacing(self.tolerance)
+        exact = self.exact_returns(section) if section.section == ReturnSection.MAXIMA and closed else section
+        if exact is None:
+            return None
+        section, window = exact, self.measuring_window(exact)
         settled = section if section.window > window else None
         motion = replace(self.classifier(settings.transient, window), settled=settled).measure(section.state())
         if motion is None:
@@ -153,7 +157,7 @@ class Convergence:
             mean = synchronization_distance(motion.mean_distance, self.model.chain.is_mirror_symmetric)
             scaled_settings = self.motion_settings.scaled_to_velocity(self.model.v)
             period = motion.period if math.isfinite(motion.period) else math.inf
-            return section, replace(motion, kind=periodic_orbit_kind(mean, period, scaled_settings), period=period)
+            return section, replace(motion, kind=regular_kind(mean, period, scaled_settings), period=period)
         if not chaotic and motion.mean_distance_error <= UNSTEADY_ERROR * motion.mean_distance:
             return section, motion
         # Chaos that still holds a state at the time limit is listed, however long it lasts.

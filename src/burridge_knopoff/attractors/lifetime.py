@@ -11,19 +11,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
-import scipy.special
 
-from burridge_knopoff.attractors.attractor import Attractor, perturb
+from burridge_knopoff.attractors.attractor import Attractor, Lifetime, perturb
 from burridge_knopoff.attractors.capture_radius import LONGEST_PATIENCE
 from burridge_knopoff.attractors.labels import UNDETERMINED, advance, label, label_arrays, stack_states
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.model.sampling import CONFIDENCE
-from burridge_knopoff.motion.kind import CHAOS
+from burridge_knopoff.motion.kind import CHAOS, MotionKind
 from burridge_knopoff.motion.section_returns import ReturnSection, state_of
 from burridge_knopoff.motion.set_distance import SPACINGS
 
@@ -32,12 +30,8 @@ from burridge_knopoff.motion.set_distance import SPACINGS
 TRAJECTORIES = 32
 EXPOSURE = 4.0
 
-# If some leave, these many times as many are added in turn, until the interval of the lifetime of this confidence lies
-# above or below the limit. A lifetime below it needs FEWEST_ENDS as well: stopping at few ends would favour samples in
-# which many left by chance. If the lifetime equals the limit, 3.5 % of these tests find it above.
+# If some leave, these many times as many are added in turn, until `Lifetime.is_decided`.
 EXTENSIONS = (1, 2, 3, 4)
-EARLY_CONFIDENCE = 0.995
-FEWEST_ENDS = 30
 
 # Time, in capture times of another attractor, after which counting starts. Trajectories that leave at once are captured
 # by then; counted earlier, they would make chaos seem to last longer.
@@ -52,42 +46,6 @@ FEWEST_LEFT = 8
 # capture radius. The radius of thin chaos rests on few perturbations; from the full radius a third may leave.
 ENSEMBLE_PERTURBATION = 0.1
 ENSEMBLE_RADIUS_SHARE = 0.01
-
-
-@dataclass(frozen=True)
-class Lifetime:
-    """Lifetime of a chaotic motion, from observed escapes.
-
-    ends : number of trajectories that left it for another attractor
-    time : total time that all trajectories spent on it
-    """
-
-    ends: int
-    time: float
-
-    @property
-    def mean(self) -> float:
-        """Mean lifetime; infinite if no trajectory left."""
-        return self.time / self.ends if self.ends else math.inf
-
-    @property
-    def interval(self) -> tuple[float, float]:
-        """95 % confidence interval of the mean lifetime; its upper end is infinite if no trajectory left."""
-        return self._interval(CONFIDENCE)
-
-    def _interval(self, confidence: float) -> tuple[float, float]:
-        tail = 0.5 * (1.0 - confidence)
-        low = self.time / float(scipy.special.gammainccinv(self.ends + 1, tail))
-        return low, self.time / float(scipy.special.gammaincinv(self.ends, tail)) if self.ends else math.inf
-
-    def is_decided(self, least: float) -> bool:
-        """Return whether enough trajectories have been followed to tell if the mean lifetime is above `least`."""
-        low, high = self._interval(EARLY_CONFIDENCE)
-        return low > least or (high < least and self.ends >= FEWEST_ENDS)
-
-    def is_longer_than(self, least: float) -> bool:
-        """Return whether the 95 % interval of the mean lifetime lies above `least`."""
-        return self.interval[0] > least
 
 
 def lifetimes(
@@ -107,6 +65,20 @@ def lifetimes(
         else:
             lives.append(_lifetime(model, attractors, index, settings, exposure))
     return lives
+
+
+def mark_transients(model: Model, attractors: Sequence[Attractor], settings: SearchSettings) -> list[Attractor]:
+    """Return attractors with the lifetimes of those that are chaotic; chaos that is not shown to last is transient.
+
+    settings : its `lifetime` is the limit above which chaos counts as an attractor
+    """
+    marked = []
+    for attractor, life in zip(attractors, lifetimes(model, attractors, settings), strict=True):
+        motion = attractor.motion
+        if life is not None and not life.is_longer_than(settings.lifetime):
+            motion = replace(motion, kind=MotionKind.TRANSIENT_CHAOS)
+        marked.append(replace(attractor, motion=motion, lifetime=life))
+    return marked
 
 
 def _lifetime(

@@ -14,6 +14,7 @@ from burridge_knopoff.attractors.attractor import Attractor, perturb
 from burridge_knopoff.attractors.candidates import Candidates
 from burridge_knopoff.attractors.convergence import FILLING_WINDOWS
 from burridge_knopoff.attractors.labels import UNDETERMINED, advance, label, label_arrays, stack_states
+from burridge_knopoff.attractors.lifetime import mark_transients
 from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
 from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.initial import InitialState
@@ -46,8 +47,9 @@ def find_attractors(
     attractor. Attractors are identified by the states at the stops of the outermost block that stops regularly; those
     without stops by the states at the maxima of the velocity of the outermost block that moves. Without stops, tori of
     more than two frequencies are undetermined. Uniform sliding is among the attractors wherever it attracts.
-    Another attractor that no state reaches is not found. Raises ValueError if an initial state does not fit the model,
-    and if there is none.
+    Another attractor that no state reaches is not found. Chaos has a `lifetime`; if this is not shown to exceed that of
+    the settings, its kind is TRANSIENT_CHAOS, and the states that reach it have its index. Raises ValueError if an
+    initial state does not fit the model, and if there is none.
 
     Times are in units of 1/ω. docs/search.md describes the search.
 
@@ -69,7 +71,7 @@ def find_attractors(
         raise refusal("samples", settings.samples, "1 or more, or initial states in starts")
     search = Search(model, settings, motion)
     labels = search.labels(search.starts(starts, start))
-    return search.attractors, labels
+    return mark_transients(model, search.attractors, settings), labels
 
 
 # Time limit, in transients, of the first labels. Most trajectories reach an attractor within it.
@@ -245,15 +247,15 @@ class Search(Candidates):
         """Follow one state until it has settled, and return the index of its attractor, which may be a new one."""
         generator = np.random.default_rng(self.settings.seed)
         for _ in range(self.trials):
-            section = self.settle(start)
+            section, new = self.settle(start), len(self.attractors)
             if section is None:
-                return UNDETERMINED
+                (state,) = advance(self.model, [start], self.settings.time_limit)
+                return new if np.isfinite(state.position).all() and self.add_slow(state) else UNDETERMINED
             index = self._attractor_of(section)
             if index != UNDETERMINED:
                 return index
-            index = len(self.attractors)
             if self.add(section):
-                return index
+                return new
             # The trajectory has come very close to an unstable motion. It continues from a perturbation off it.
             start = perturb(section.state(), UNSTABLE_PUSH * self.resolution, generator)
         return UNDETERMINED

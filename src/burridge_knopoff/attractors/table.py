@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.attractors.attractor import Attractor
-from burridge_knopoff.attractors.lifetime import Lifetime
+from burridge_knopoff.attractors.attractor import Attractor, Lifetime
 from burridge_knopoff.dataset.columns import Column, column_values
 from burridge_knopoff.dataset.variables import PERIOD, Variable, flag
 from burridge_knopoff.model.model import Model
@@ -125,6 +124,14 @@ def slot_variables(place: str, parameter: str = "a") -> dict[str, Column]:
         ),
         "lifetime_high": life(
             "upper end of the lifetime: of its 95 % confidence interval", lambda lifetime: lifetime.interval[1]
+        ),
+        "lifetime_ends": replace(
+            life("escapes: number of trajectories of the ensemble that left the chaos", lambda lifetime: lifetime.ends),
+            dtype="i4",
+            attributes=NOTHING,
+        ),
+        "lifetime_time": life(
+            "total time: that all trajectories of the ensemble spent in the chaos", lambda lifetime: lifetime.time
         ),
         "radius": column(
             f"{of}.radius", "f8", "capture radius: distance from its returns within which trajectories are captured"

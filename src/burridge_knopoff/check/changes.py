@@ -25,7 +25,7 @@ def changes(study: Study, results: Path, sources: Mapping[str, str]) -> dict[str
     """
     rules: dict[str, list[str]] = defaultdict(list)
     for name, current in sources.items():
-        if origin := _origin(results / name):
+        if (results / name).is_file() and (origin := _origin(results / name)):
             for change in _changes(origin, study, current):
                 rules[change] += [origin.rule] * (origin.rule not in rules[change])
     return rules

@@ -15,8 +15,9 @@ from burridge_knopoff.check.leftovers import leftovers, missing_files, run_logs
 from burridge_knopoff.messages import command
 from burridge_knopoff.outputs import study_files
 from burridge_knopoff.provenance.bad_file import BadFile
+from burridge_knopoff.provenance.files import read_regular
 from burridge_knopoff.provenance.origin import Origin
-from burridge_knopoff.provenance.record import NAME, remake_command
+from burridge_knopoff.provenance.record import CHECKOUT, NAME, OTHER_SNAKEFILE, imports_study, remake_command
 from burridge_knopoff.provenance.sources import current_sources
 from burridge_knopoff.running.status import STATUS_WORDS
 from burridge_knopoff.study.chunks import chunks
@@ -53,6 +54,7 @@ class Check:
     files : number of checked files, in words
     findings : problems with these files
     others : problems that another run of the last config does not fix: leftovers, unknown names, an edited config
+    left : files of an earlier config, with their logs and benchmarks
     notes : further remarks, one per line
     is_locked : whether Snakemake has locked the files, as it does during a run
     """
@@ -61,6 +63,7 @@ class Check:
     files: str
     findings: list[Finding]
     others: list[Finding]
+    left: list[Path]
     notes: list[str]
     is_locked: bool = False
 
@@ -76,7 +79,7 @@ class Check:
         return [str(finding.path) for finding in self.findings if finding.kind != "failed"]
 
     def lines(self) -> list[str]:
-        """Return a line for each finding, their totals, the notes, and the command that recreates the files."""
+        """Return a line for each finding, their totals, the notes, and the command that recreates or deletes files."""
         counts = Counter(finding.kind for finding in (*self.findings, *self.others))
         numbers = ", ".join(f"{counts[kind]} {kind}" for kind in KINDS)
         lines = [*map(str, (*self.findings, *self.others)), f"{self.results}: {self.files}: {numbers}", *self.notes]
@@ -86,7 +89,16 @@ class Check:
                 "a run is in progress here and makes missing and outdated files; if it was killed, release its lock by "
                 "`snakemake --unlock` and run it again",
             ]
-        return [*lines, f"remake: {self._remake()}"] if self.paths else lines
+        if self.paths:
+            remake = self._remake()
+            if f" -s {OTHER_SNAKEFILE} " in remake:
+                lines += [f"{OTHER_SNAKEFILE}: the Snakefile of this study, if you trust it; not that of {CHECKOUT}"]
+            return [*lines, f"remake: {remake}"]
+        # By the record of another study, all files may be left over.
+        if self.exit_code == 1 or not self.left:
+            return lines
+        files = format_count(len(self.left), "file")
+        return [*lines, f"left over, with logs and benchmarks: {files}; delete: {command('rm', *self.left)}"]
 
     def _remake(self) -> str:
         listed = ("bk", "check", "--paths", os.path.relpath(self.results, root_of(self.results)))
@@ -104,7 +116,7 @@ def is_locked(results: Path) -> bool:
     root = root_of(results)
     inside = f"{results.absolute().relative_to(root).as_posix()}/"
     locks = (root / ".snakemake/locks").glob("*.lock")
-    return any(line.startswith(inside) for lock in locks for line in lock.read_text(encoding="utf-8").splitlines())
+    return any(line.startswith(inside) for lock in locks for line in read_regular(lock).decode().splitlines())
 
 
 def check_study(results: str | Path) -> Check:
@@ -129,9 +141,6 @@ def check_study(results: str | Path) -> Check:
         absent = format_count(len(solver_runs), "run")
         notes += [f"not counted: {absent} of other solvers, none of which was requested yet"] if solver_runs else []
         solver_runs = {}
-    if left:
-        files = format_count(len(left), "file")
-        notes.append(f"left over, with logs and benchmarks: {files}; delete: {command('bk', 'prune', results)}")
     missing = missing_files(results, study)
     file_names = [name for name in study_files(study) if not name.endswith(".done")]
     rest = {name: missing.get(name, Path()) for name in file_names if name in missing or (results / name).is_file()}
@@ -155,6 +164,7 @@ def check_study(results: str | Path) -> Check:
             *(Finding("unknown", results / name, "no file of a study has that name") for name in sorted(unknown)),
             *filter(None, [config_change(results, record)]),
         ],
+        left,
         notes,
         is_locked(results),
     )
@@ -223,10 +233,8 @@ def config_change(results: Path, record: dict[str, Any]) -> Finding | None:
     # The record contains the path of the config file relative to the folder of the run.
     root = root_of(results)
     file, path = Path(record["config_file"]), root / record["config_file"]
-    # A workflow that imports the study passes its config on; its Snakefile is on record.
-    words: list[str] = record["arguments"]
-    option, snakefile, *_ = [*words, "", ""]
-    if option == "-s" and (root / snakefile).resolve() == path.resolve():
+    # Such a workflow passes its config on.
+    if imports_study(record, root):
         return Finding("note", file, "imports the study; the config of the last run is checked")
     if not path.exists():
         return Finding("note", file, "does not exist; the config of the last run is checked")
@@ -240,29 +248,3 @@ def config_change(results: Path, record: dict[str, Any]) -> Finding | None:
         reason = str(error).partition(": ")[2]
         return Finding("outdated", file, f"{reason}; the config of the last run is checked")
     return None
-
-
-def check_record(results: Path) -> None:
-    """Refuse a folder whose record is not that of its files, since by it all of them could be left over.
-
-    Raises ValueError, one line, if the config file has changed, if the record is of a study of another name, if a file
-    was made with other params, or if a point is missing.
-    """
-    record, study = recorded_study(results)
-    change = config_change(results, record)
-    if change and change.kind == "outdated":
-        raise ValueError(f"{results}: {change.path} {change.reason.partition(';')[0]}: run snakemake first")
-    if study.name != results.resolve().name:
-        raise ValueError(f"{results}: {NAME} is the record of study {study.name}: run snakemake first")
-    runs = run_files(study)
-    for name in (*runs, *study_files(study)):
-        try:
-            check_file(study, results, name, record, runs.get(name))
-        except BadFile as error:
-            if error.kind == "missing" and name.startswith("points/"):
-                reason = f"incomplete ({error.path}: not made yet), so that its record cannot be verified"
-            elif error.kind == "outdated":
-                reason = f"its files are not those of {NAME} ({error.path}: {error.reason})"
-            else:
-                continue
-            raise ValueError(f"{results}: {reason}: run snakemake first") from None

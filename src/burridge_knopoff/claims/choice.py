@@ -23,7 +23,8 @@ FACTOR = 2.0
 BISECTIONS = 8
 
 #: Correlation of the velocities of the end blocks up to which they are in antiphase; that of branch 2 is about −0.99.
-ANTIPHASE = -0.9
+#: Loosely it may be up to that of two sines 60° away from antiphase.
+ANTIPHASE, LOOSE_ANTIPHASE = -0.9, -0.5
 
 #: {name: summary} of a study.
 Summaries = Mapping[str, "xarray.Dataset"]
@@ -154,6 +155,7 @@ Samples = Annotated[
 StateShare = Annotated[float, Scaled("the required share of states", percent=True, of_one=True)]
 LooseShare = Annotated[float, Scaled("the share for “holds loosely”", percent=True, of_one=True)]
 Correlation = Annotated[float, Scaled("the correlation that counts as antiphase", of_one=True)]
+LooseCorrelation = Annotated[float, Scaled("the correlation that counts loosely as antiphase", of_one=True)]
 ModeDeviation = Annotated[
     float, Scaled("the deviation from a mode, in amplitude ratio and phase, up to which the motion is one of it")
 ]

@@ -1,7 +1,8 @@
 """Claims: statements of the paper, each a function that judges it from the summaries of a study.
 
-The first paragraph of its docstring is the statement, in our words; the rest says how it is judged. Parameters are what
-the paper says, or choices of ours (`choice`).
+The first paragraph of its docstring is the statement, in our words. The paragraph that begins with «Holds» is the rule
+by which it is judged, with the values of parameters in braces; without one it is `SHARE_RULE` or `NUMBER_RULE`.
+Parameters are what the paper says, or choices of ours (`choice`).
 """
 
 from __future__ import annotations
@@ -18,11 +19,19 @@ if TYPE_CHECKING:
     import xarray
 
 
+#: The rule for a statement on all values of a, and that for a number.
+SHARE_RULE = (
+    "Holds if true at all judged values of a, under each law and from each state, and loosely at nine in ten of them."
+)
+NUMBER_RULE = "Holds if the number is within {tolerance:g} of {claimed:g}, and loosely within {loose:g}."
+
+
 @dataclass(frozen=True)
 class Claim:
     """A statement of the paper and how it is judged.
 
     name : of its function; topic : of its module
+    rule : when it holds, and when loosely
     place : where the paper says it; figure : the figure of the study that shows it
     reads : names of the summaries that it reads; its verdict depends on no others
     parameters : of the function, with the values of the claim
@@ -34,6 +43,7 @@ class Claim:
     name: str
     topic: str
     statement: str
+    rule: str
     place: str
     figure: str
     reads: tuple[str, ...]
@@ -64,10 +74,14 @@ def claim(
     def register(function: Callable[..., Verdict]) -> Claim:
         hints = get_type_hints(function, include_extras=True)
         parameters = {name: item.default for name, item in list(inspect.signature(function).parameters.items())[1:]}
+        statement, *paragraphs = (" ".join(text.split()) for text in (inspect.getdoc(function) or "").split("\n\n"))
+        common_rule = SHARE_RULE if "loose_share" in parameters else NUMBER_RULE
+        rule = next((text for text in paragraphs if text.startswith("Holds")), common_rule)
         CLAIMS[function.__name__] = Claim(
             function.__name__,
             function.__module__.rpartition(".")[2],
-            " ".join((inspect.getdoc(function) or "").partition("\n\n")[0].split()),
+            statement,
+            rule.format(**parameters).replace(" -", " −"),
             place,
             figure,
             reads,

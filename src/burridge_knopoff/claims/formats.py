@@ -149,13 +149,14 @@ def as_markdown(content: Mapping[str, Any], figures: str) -> str:
 
 
 def _section(claim: Mapping[str, Any], figures: str) -> Iterator[str]:
-    """Yield the paragraphs of one claim: statement, verdict and reason, exceptions, what would change the verdict."""
+    """Yield the paragraphs of one claim: statement, verdict and reason, rule, exceptions, and what would change it."""
     names = claim["depends_on"]
     yield f"#### {claim['name']}"
     yield f"*{claim['statement']}* ({claim['place']})"
     under = {CONVENTION: "under the study's convention", READING: "under the first reading"}.get(claim["verdict"])
     under_first = f" ({under}: {claim['own']})" if under else ""
     yield f"**{claim['verdict'].capitalize()}**{under_first}. {claim['reason']}"
+    yield f"Rule: {claim['rule'][0].lower()}{claim['rule'][1:]}"
     if claim["changes"]:
         items = [_link(item, names) for item in claim["changes"].split("; ")]
         yield "\n".join(["Exceptions and other cases:", "", *map(_item, items)])

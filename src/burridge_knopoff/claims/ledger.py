@@ -126,6 +126,7 @@ def _entry(claim: Claim, verdict: Verdict, figures: Collection[str]) -> dict[str
         "name": claim.name,
         "topic": claim.topic,
         "statement": claim.statement,
+        "rule": claim.rule,
         "place": claim.place,
         "verdict": verdict.verdict,
         "own": verdict.own or verdict.verdict,

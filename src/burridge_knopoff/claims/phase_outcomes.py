@@ -10,10 +10,9 @@ import numpy as np
 
 from burridge_knopoff.claims.range import Range
 from burridge_knopoff.claims.verdict import (
-    HOLDS,
-    LOOSELY,
     Measured,
     NotTestableError,
+    Share,
     UndecidedError,
     count_share,
     judge_worst_share,
@@ -76,10 +75,13 @@ class PhaseOutcomes:
         self.holds = (self.synchronized.low >= criteria.share) & (self.antiphase.low >= criteria.share)
         # Judge all laws, the values of a inside the range, and the amplitudes without backward slip.
         self.cells = np.ix_(np.arange(len(self.laws)), self.inside, self.without_backward_slip)
-        cells = zip(self.laws, self.holds[self.cells], strict=True)
-        shares = {law: count_share(cell.all(axis=1)) for law, cell in cells}
-        self.shares, worst = shares, judge_worst_share(shares, criteria.loose_share)
-        self.verdict = LOOSELY if worst == HOLDS and not self.holds[:, self.inside].all() else worst
+        self.shares = self.shares_at(self.without_backward_slip)
+        self.verdict = judge_worst_share(self.shares, criteria.loose_share)
+
+    def shares_at(self, amplitudes: np.ndarray) -> dict[str, Share]:
+        """Return the share of the judged values of a at which the states of some amplitudes, a mask, all agree."""
+        cells = self.holds[:, self.inside][..., amplitudes]
+        return {law: count_share(cell.all(axis=1)) for law, cell in zip(self.laws, cells, strict=True)}
 
     @property
     def amplitudes(self) -> str:

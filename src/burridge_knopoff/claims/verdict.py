@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.study.formatting import format_values
 from burridge_knopoff.study.paper import PAPER_LAWS
 
@@ -94,11 +93,6 @@ class Share:
         """The fraction."""
         return self.hits / self.count
 
-    @property
-    def interval(self) -> tuple[float, float]:
-        """The ends of its 95 % Wilson interval."""
-        return fraction_interval(self.hits, self.count)[1:]
-
     def __str__(self) -> str:
         if self.count < FEW:
             return f"{self.hits} of {self.count}"
@@ -119,17 +113,17 @@ def worst_verdict(verdicts: Iterable[str]) -> str:
 
 
 def judge_share(share: Share, loose: float) -> str:
-    """Judge a statement on all values from a sample: the one rule for every fraction.
+    """Judge a statement on all values of a, onsets of chaos or solver points: the one rule for every fraction.
 
-    It holds if all values are as claimed, and loosely if the fraction is at least `loose`. It fails if the 95 % Wilson
-    interval of the fraction lies below `loose`. If the fraction is smaller but its interval includes `loose`, the
-    values are too few, and the statement is undecided.
+    The values are a grid, not a random sample, so that the fraction has no error. The statement holds if all values are
+    as claimed, and loosely if the fraction is at least `loose`. Below, it is undecided if one more of the values would
+    reach `loose`, and fails otherwise, or if none is as claimed.
     """
     if share.hits == share.count:
         return HOLDS
     if share.value >= loose:
         return LOOSELY
-    return FAILS if share.interval[1] < loose else UNDECIDED
+    return UNDECIDED if share.hits and (share.hits + 1) / share.count >= loose else FAILS
 
 
 def share_is_decided(least: int, most: int, count: int, loose: float) -> bool:
@@ -179,7 +173,7 @@ def join_words(words: Sequence[str], conjunction: str = "and") -> str:
 def judge_worst_share(shares: Mapping[str, Share], loose: float) -> str:
     """Return the verdict for the worst of some named fractions, by `judge_share`.
 
-    Raises UndecidedError, with the fraction and its interval, if the values are too few to decide.
+    Raises UndecidedError, with the fraction, if one value more would change the verdict.
     """
     verdicts = {name: judge_share(share, loose) for name, share in shares.items()}
     worst = worst_verdict(verdicts.values())
@@ -187,8 +181,8 @@ def judge_worst_share(shares: Mapping[str, Share], loose: float) -> str:
         name = next(name for name, verdict in verdicts.items() if verdict == UNDECIDED)
         share = shares[name]
         raise UndecidedError(
-            f"it is true in {share.hits} of {share.count} cases ({name}), and the 95 % interval of this share includes "
-            f"{loose:g} (its upper end is {share.interval[1]:.2f}), so there are too few cases to decide"
+            f"it is true in {share.hits} of {share.count} cases ({name}), and one case more would reach a share of "
+            f"{loose:g}"
         )
     return worst
 

@@ -32,7 +32,6 @@ COMMANDS = {
     "catalogue": "record the slip events of one run and the slope of their magnitudes",
     "show": "describe and plot a point file or a summary",
     "check": "find files of a study that are missing, corrupt, outdated or failed",
-    "prune": "delete results that no longer belong to a study",
     "completion": "print a script that completes commands and options in a shell",
 }
 

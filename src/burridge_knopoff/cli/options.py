@@ -17,7 +17,8 @@ from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.fields import FOLLOWS, REQUIRED, fields_of
 from burridge_knopoff.model.initial import OWN, PAPER_STATES, STATE_NAME, InitialState, initial_state
 from burridge_knopoff.model.model import LAW_NAME, Model
-from burridge_knopoff.model.ranges import Either, Interval, IntervalAtSpeed, Number, OneOf, Several, TrueOrFalse, Whole
+from burridge_knopoff.model.ranges import Either, Interval, Number, OneOf, Several, TrueOrFalse, Whole
+from burridge_knopoff.model.sampling import IntervalAtSpeed
 from burridge_knopoff.provenance.files import check_target
 from burridge_knopoff.running.command import CHAIN_OPTIONS
 from burridge_knopoff.values import OTHER_NUMBER, WHOLE_NUMBER

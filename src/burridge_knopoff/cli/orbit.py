@@ -26,9 +26,10 @@ if TYPE_CHECKING:
     from burridge_knopoff.model.model import Model
     from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 
-DESCRIPTION = """Compute the synchronized orbit, stable or unstable, of a mirror-symmetric chain. If an initial state is
-given, compute the periodic orbit to which its motion settles, in any chain. An orbit is stable if all multipliers
-except that of the flow have modulus below 1."""
+DESCRIPTION = """Compute the synchronized orbit of a mirror-symmetric chain, stable or unstable, on which the end blocks
+stop once in a period; synchronized motion of another period may attract as well. If an initial state is given, compute
+the periodic orbit to which its motion settles, in any chain. An orbit is stable if all multipliers except that of the
+flow have modulus below 1."""
 
 EXAMPLES = """  bk orbit --law linearized --a 0.08
   bk orbit --law linearized --a 0.08 --initial plus
@@ -105,9 +106,15 @@ def _lines(orbit: PeriodicOrbit, most: int) -> list[str]:
         + "; the others are 0" * any(abs(spectrum.whole) <= ZERO),
     ]
     if len(spectrum.symmetry_breaking):
-        lines.append(
-            f"             mirror-breaking perturbations: {_complex(spectrum.symmetry_breaking**spectrum.power)}"
-        )
+        lines += [
+            f"             mirror-symmetric perturbations: {_complex(spectrum.symmetry_preserving)}",
+            f"             mirror-breaking perturbations: {_complex(spectrum.symmetry_breaking)}",
+        ]
+        if not spectrum.attracts_within_synchrony:
+            lines.append(
+                "synchrony    the orbit repels mirror-symmetric perturbations: synchronized motion of another period "
+                "may attract (bk attractors)"
+            )
     lines += [
         f"stops        {stops}",
         f"residual     {orbit.residual:.1e} after a return",

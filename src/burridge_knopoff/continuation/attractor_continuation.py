@@ -18,9 +18,9 @@ from pathlib import Path
 
 import numpy as np
 
-from burridge_knopoff.attractors.attractor import Attractor
+from burridge_knopoff.attractors.attractor import Attractor, Lifetime
 from burridge_knopoff.attractors.labels import UNDETERMINED
-from burridge_knopoff.attractors.lifetime import Lifetime, lifetimes
+from burridge_knopoff.attractors.lifetime import lifetimes
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
 from burridge_knopoff.attractors.table import Row

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from burridge_knopoff.attractors.attractor import Attractor
+from burridge_knopoff.attractors.attractor import Attractor, Lifetime
 from burridge_knopoff.attractors.capture_radius import Capture
-from burridge_knopoff.attractors.lifetime import Lifetime
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.laws import LAWS, FormulaLaw

@@ -27,7 +27,7 @@ from burridge_knopoff.dataset.variables import (
 )
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
-from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.provenance.files import write_whole
 from burridge_knopoff.provenance.sources import SOFTWARE
 from burridge_knopoff.running.command import CHAIN_OPTIONS, simulate_command
@@ -141,13 +141,12 @@ def point_values(trajectory: Trajectory) -> dict[str, Any]:
     """Return the values of all point variables."""
     settings = trajectory.settings
     width = settings.window / settings.batches
-    position, velocity = trajectory.model.initial_coordinates(trajectory.initial)
     special = {
         "a": trajectory.model.a,
         "v": trajectory.model.v,
         "block": np.arange(1, trajectory.model.blocks + 1),
-        "initial_position": position,
-        "initial_velocity": velocity,
+        "initial_position": trajectory.initial.position,
+        "initial_velocity": trajectory.initial.velocity,
         "status": Status[trajectory.status.upper()],
         "level": LEVELS,
         "batch": trajectory.begin_time + settings.transient + width * (np.arange(settings.batches) + 0.5),
@@ -162,7 +161,7 @@ def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
     contents = "One run: event sequence, section crossings and phase-space distance between the end blocks."
     attributes = {
         "source": f"{SOFTWARE}, event-driven or time-stepping simulation",
-        "history": simulate_command(model, trajectory.initial, settings),
+        "history": _history(trajectory),
         **model_attributes(model),
         "solver": settings.solver,
         "initial": trajectory.initial.name,
@@ -178,6 +177,13 @@ def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
     if trajectory.missing_derivative:
         attributes["missing_derivative"] = trajectory.missing_derivative
     return global_attributes(title, attributes, module=__name__, contents=contents)
+
+
+def _history(trajectory: Trajectory) -> str:
+    """Return the command that repeats a run, or that none does: it continues from a state of a motion."""
+    if isinstance(trajectory.given, ChainState):
+        return f"simulate from a state of another run at tau = {trajectory.begin_time!r}"
+    return simulate_command(trajectory.model, trajectory.given, trajectory.settings)
 
 
 def model_attributes(model: Model) -> dict[str, Any]:

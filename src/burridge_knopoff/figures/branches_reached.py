@@ -14,12 +14,12 @@ CAPTION = """\
 Top: ⟨J⟩ of the attractors, in the colour of their branch, and of the runs from each initial state (thin symbols, with
 bars of three standard errors). A branch has the same number (in brackets) in all figures, and the same colour where it
 has one of its own; branches that the fewest states reach, over all a, share a colour. A run may end before it reaches
-its attractor. Dotted: a_c, at which the synchronized orbit changes its stability. At a = 0 the paper's laws are
-constant, and there is no attractor: ⟨J⟩ depends on the initial state. Bottom: the branch reached from each initial
-state, with a row for each state and convention; black where it is undetermined, white between the values of a coarse
-grid. A state from which a run reaches a motion that does not attract is perturbed. Contact one-sided: a stuck block
-holds against any backward pull; symmetric: it slips backward beyond its static friction. Start moving: all blocks slip
-at τ = 0; tested: blocks that friction can hold are stuck.
+its attractor. Dotted: a_c, at which the synchronized orbit changes its stability (not drawn if this orbit is unstable
+on both sides). At a = 0 the paper's laws are constant, and there is no attractor: ⟨J⟩ depends on the initial state.
+Bottom: the branch reached from each initial state, with a row for each state and convention; black where it is
+undetermined, white between the values of a coarse grid. A state from which a run reaches a motion that does not attract
+is perturbed. Contact one-sided: a stuck block holds against any backward pull; symmetric: it slips backward beyond its
+static friction. Start moving: all blocks slip at τ = 0; tested: blocks that friction can hold are stuck.
 """
 
 

@@ -28,6 +28,7 @@ from burridge_knopoff.figures.style import (
     say,
     styled,
 )
+from burridge_knopoff.summaries.orbit_flags import stability_edge
 
 TITLE = "⟨J⟩ versus a"
 CATEGORY = "Synchronization"
@@ -36,9 +37,9 @@ INPUTS = ("mean_distance", "orbits")
 CONDITION = "has_end_blocks"
 CAPTION = """\
 The time average ⟨J⟩ of the phase-space distance between the end blocks versus a, for each law. Symbols: runs from each
-initial state, with bars of three standard errors. Dotted: a_c, at which the synchronized orbit changes its stability.
-At a = 0 the paper's laws are constant: free oscillations neither grow nor decay, and ⟨J⟩ depends on the initial state
-alone.
+initial state, with bars of three standard errors. Dotted: a_c, at which the synchronized orbit changes its stability
+(not drawn if this orbit is unstable on both sides). At a = 0 the paper's laws are constant: free oscillations neither
+grow nor decay, and ⟨J⟩ depends on the initial state alone.
 """
 
 
@@ -76,7 +77,7 @@ def draw(
             say(panels[0, column], "$J = 0$ at all times")
         for index, initial in enumerate(runs["initial"].values):
             draw_runs(panels[0, column], runs.sel(initial=initial), "a", **state_symbol(index, size))
-        if orbits is not None and np.isfinite(critical := orbits["critical_a"].sel(law=law).item()):
+        if orbits is not None and np.isfinite(critical := stability_edge(orbits.sel(law=law))):
             panels[0, column].axvline(critical, zorder=0, color="0.4", linestyle=":", linewidth=0.9)
             top, look = ("data", "axes fraction"), {"textcoords": "offset points", "va": "top", "fontsize": 8.0}
             panels[0, column].annotate("$a_c$", (critical, 1.0), (3, -3), xycoords=top, **look)

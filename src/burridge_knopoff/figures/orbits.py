@@ -24,22 +24,32 @@ from burridge_knopoff.figures.style import (
 )
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.summaries.orbit_flags import CriticalStability
 
 TITLE = "The synchronized orbit"
 CATEGORY = "Synchronization"
 INPUTS = ("orbits", "mean_distance")
 CONDITION = "has_synchronized_orbit"
 CAPTION = """\
-(a) Floquet multipliers of the synchronized orbit. At a_c (dots) the modulus of the transverse multiplier μ passes 1;
-the orbit is stable where it is smaller. (b) ⟨J⟩ of the stable and unstable orbits near a_c, with the study's runs in
-that range; symbols of the first law are smaller. (c) The distance between the end blocks on the asymmetric orbit that
-branches off at a_c: points, and the power law in the distance from a_c fitted to them. (d) The difference between each
-law and the first law in μ and in the period T, at the same a and, for the paper's laws, at the same slope of friction
-at the driver velocity. Values of 0 are left out.
+(a) Floquet multipliers of the synchronized orbit, on which the end blocks stop once in a period; it is stable where the
+moduli of all are smaller than 1. At a_c (dots) that of the transverse multiplier μ passes 1. Open dot: the orbit repels
+mirror-symmetric perturbations there, and synchrony does not end. (b) ⟨J⟩ of the stable and unstable orbits near a_c,
+with the study's runs in that range; symbols of the first law are smaller. (c) The distance between the end blocks on
+the asymmetric orbit that branches off at a_c: points, and the power law in the distance from a_c fitted to them. (d)
+The difference between each law and the first law in μ and in the period T, at the same a and, for the paper's laws, at
+the same slope of friction at the driver velocity. Values of 0 are left out.
 """
 
 # Range of the second panel: from this fraction of a_c to the last orbit that branches off.
 NEAR = 0.93
+
+# Line styles of the synchronized orbit below and above a_c.
+SIDES = {
+    CriticalStability.UNDETERMINED: ("", ""),
+    CriticalStability.UNSTABLE: (":", ":"),
+    CriticalStability.LOST: ("-", ":"),
+    CriticalStability.GAINED: (":", "-"),
+}
 
 # Size of the symbol of the first initial state.
 SIZE = 2.6
@@ -55,9 +65,7 @@ def draw(orbits: xarray.Dataset, runs: xarray.Dataset) -> Figure:
     if not np.isfinite(orbits["critical_a"]).any():
         was_found = np.isfinite(orbits["period"]).any()
         for panel in panels:
-            say_nothing(
-                panel, "the synchronized orbit\nloses its stability at no $a$" if was_found else "no synchronized orbit"
-            )
+            say_nothing(panel, "$|\\mu|$ passes 1 at no $a$" if was_found else "no synchronized orbit")
         return figure
     for index, law in enumerate(orbits["law"].values):
         part = orbits.sel(law=law)
@@ -114,7 +122,8 @@ def _draw_multipliers(panel: Axes, orbits: xarray.Dataset, hue: str) -> None:
     look: Any = {"color": hue, "marker": lone_marker(a), "markersize": 3.5}
     panel.plot(*transverse_curve(orbits), "-", **look)
     panel.plot(a, symmetric_curve(orbits), "--", **look, markerfacecolor="none")
-    panel.plot(*critical_point(orbits), "o", color=hue, markersize=3.5)
+    fill = "none" if orbits["critical_stability"].item() == CriticalStability.UNSTABLE else "full"
+    panel.plot(*critical_point(orbits), "o", color=hue, markersize=3.5, fillstyle=fill)
 
 
 def critical_point(ds: xarray.Dataset) -> tuple[float, float]:
@@ -140,16 +149,13 @@ def symmetric_curve(orbits: xarray.Dataset) -> np.ndarray:
 def _draw_distance(panel: Axes, orbits: xarray.Dataset, runs: xarray.Dataset, index: int) -> None:
     """Draw ⟨J⟩ of the stable and unstable orbits of a law, given with its number, and of the study's runs nearby."""
     hue = law_color(index)
-    critical = orbits["critical_a"].item()
+    critical, stability = orbits["critical_a"].item(), orbits["critical_stability"].item()
     offset, distance, stable = _dense_branch(orbits)
     if not np.isfinite(critical):
         return
     low, high = NEAR * critical, np.nanmax([critical, *(critical + offset)])
-    for ends, attracts in (
-        ((low, critical), _attracts(orbits, below=True)),
-        ((critical, high), _attracts(orbits, below=False)),
-    ):
-        panel.plot(ends, [0.0, 0.0], "-" if attracts else ":", color=hue)
+    for ends, style in zip(((low, critical), (critical, high)), SIDES[stability], strict=True):
+        panel.plot(ends, [0.0, 0.0], linestyle=style, color=hue)
     for mask, style in ((stable, "-"), (~stable, ":")):
         panel.plot(critical + offset, np.where(mask, distance, np.nan), style, color=hue)
     near = (runs["a"].values >= low) & (runs["a"].values <= high)
@@ -158,15 +164,6 @@ def _draw_distance(panel: Axes, orbits: xarray.Dataset, runs: xarray.Dataset, in
         # Symbols of both laws may coincide at ⟨J⟩ = 0: those of the first law are smaller and lie on top.
         look = {**state_symbol(k, SIZE + 2.5 * index), "color": hue, "zorder": 3 - 0.1 * index}
         panel.plot(run["a"].values, run["mean_distance"].values, label=f"run from {initial}", **look)
-
-
-def _attracts(orbits: xarray.Dataset, *, below: bool) -> bool:
-    """Return whether synchrony is stable on a side of a_c: at the nearest value of a or, without one, from the loss."""
-    a, modulus = orbits["a"].values, np.abs(orbits["transverse_multiplier"].values)
-    side = np.isfinite(modulus) & ((a < orbits["critical_a"].item()) == below)
-    if not side.any():
-        return below
-    return bool(modulus[side][-1 if below else 0] < 1.0)
 
 
 def _dense_branch(orbits: xarray.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -46,7 +46,7 @@ def draw(rotation: xarray.Dataset) -> Figure:
     titles = []
     for panel, law in zip(panels, laws, strict=True):
         part = rotation.sel(law=law)
-        share, _, _ = locked_share(part, np.isfinite(part["a"].values))
+        share = locked_share(part, np.isfinite(part["a"].values))
         locked = f": {100 * share:.0f} % of grid values locked" if np.isfinite(share) else ""
         titles.append(f"{law} law{locked}")
         _curve(panel, part)

@@ -67,7 +67,7 @@ class KernelModel:
         slope: int,
         linear: bool,
         rate: float,
-        steepest: float,
+        steepest_at_rest: bool,
         v: float,
         symmetric: bool,
         creep_speed: float = ...,
@@ -173,6 +173,12 @@ class Exponents:
     def results(self) -> dict:
         """
         growth (batches, vectors), -inf for dropped vectors, duration (batches,), and the number of exponents -inf.
+        """
+
+    @property
+    def steps(self) -> int:
+        """
+        Number of parts of the motion along which perturbations were propagated.
         """
 
     @property

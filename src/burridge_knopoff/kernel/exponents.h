@@ -2,8 +2,8 @@
 //
 // While m blocks are stuck at once, their m velocity perturbations are 0. Hence at least as many exponents are −∞ as
 // blocks are ever stuck at the same time. More are −∞ if a stuck block divides the chain into parts that lose
-// perturbations one after the other. Lost vectors are dropped, and the growth of the others is summed in batches. A
-// batch begins and ends with the first orthonormalisation after its edge.
+// perturbations one after the other. Lost vectors are dropped, and the growth of the others is summed in batches, at
+// whose edges they are orthonormalised; under quasi-static loading of a chain as a whole, before the next start.
 //
 // Where several blocks stop or start at one instant, the derivative of the flow may depend on the order in which a
 // perturbation lets them do so; the flow then has directional derivatives only. Two changes commute at first order

@@ -202,16 +202,18 @@ class FrictionSeries {
                 made = o.code == RECIPROCAL ? reciprocal
                        : o.code == POWER
                            ? each(p[0], [&](double x, int lane) { return std::pow(x, L::of_lane(o.alpha, lane)); })
-                       : o.code == EXP ? each(p[0], [](double x, int) { return std::exp(x); })
-                                       : each(p[0], [](double x, int) { return std::log(x); });
+                       : o.code == EXP
+                           ? each(p[0], [&](double x, int k) { return std::exp(std::min(x, L::of_lane(o.beta, k))); })
+                           : each(p[0], [](double x, int) { return std::log(x); });
             } else if (o.code == RECIPROCAL) {
                 made = -((inner(p, out, n) + p[n] * out[0]) * out[0]);
             } else if (o.code == POWER) {
                 // n p_0 y_n is the sum of ((α + 1) k − n) p_k y_(n−k) over k = 1 … n.
                 made = weighted(p + 1, out, n - 1, o.alpha + 1.0, o.alpha + 1.0 - double(n)) * (1.0 / n) * reciprocal;
             } else if (o.code == EXP) {
-                // n y_n is the sum of k p_k y_(n−k) over k = 1 … n.
+                // n y_n is the sum of k p_k y_(n−k) over k = 1 … n; 0 where the exponential is constant.
                 made = weighted(p + 1, out, n - 1, 1.0, 1.0) * (1.0 / n);
+                made = select(p[0] > o.beta, vec{}, made);
             } else {
                 // n p_0 y_n is n p_n minus the sum of (n − k) p_k y_(n−k) over k = 1 … n − 1.
                 made = p[n];

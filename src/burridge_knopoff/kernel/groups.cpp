@@ -297,6 +297,7 @@ void Run::observe_distance(const Clock &at) {
         d.position[0] += observer.apart;
         d.begin(Blocks::ORDER);
         observer.average(distance_from, 0.0, length);
+        observer.compare(distance_from, 0.0, length);
     }
     distance_from = at;
 }

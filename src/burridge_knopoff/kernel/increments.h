@@ -6,9 +6,11 @@
 //
 // where r_j are reference positions, which recede with the stuck blocks, d is the displacement of the driver since they
 // were taken, and only the blocks j that slip contribute to the sum. A block that stops takes a new reference position.
-// Blocks are in the order of their lanes, so that the sum does not depend on the order in which they have started.
+// Each column of vectors has a list of the slipping blocks whose springs reach it, so that others cost nothing there.
+// The list is in the order of lanes, so that the sum does not depend on the order in which blocks have started.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "springs.h"
@@ -28,83 +30,96 @@ class Increments {
     // Begin without slipping blocks.
     void begin(int columns) {
         used = true;
-        this->columns = columns;
         reference.reserve(columns);
-        for (const Slipping &block : slipping) spare.push_back(block.number);
-        slipping.clear();
+        for (std::vector<Pulls> *pulls : {&of_springs, &of_dashpots}) {
+            pulls->resize(columns);
+            for (Pulls &column : *pulls) column.clear();
+        }
     }
 
     // A block in a lane starts; member : the blocks of the group, ascending
     void start(const Springs &springs, const std::vector<int> &member, int lane) {
-        size_t number = of_springs.size();
-        if (spare.empty()) {
-            of_springs.emplace_back(1);
-            of_dashpots.emplace_back(1);
-        } else {
-            number = spare.back();
-            spare.pop_back();
-        }
-        fill(of_springs[number], springs, springs.strength, springs.diagonal, member, lane);
-        if (springs.damped) fill(of_dashpots[number], springs, springs.damping, springs.damping_diagonal, member, lane);
-        slipping.insert(slipping.begin() + before(lane),
-                        {lane, number, of_springs[number].at(), of_dashpots[number].at()});
+        add(of_springs, springs, springs.strength, springs.diagonal, member, lane);
+        if (springs.damped) add(of_dashpots, springs, springs.damping, springs.damping_diagonal, member, lane);
     }
 
     // The block in a lane stops at a position: add what it has contributed to the forces on all blocks.
     void stop(Rows &force, int lane, double position) {
-        const int k = before(lane);
         const double far = position - reference.lane(lane);
-        for (int c = 0; c < columns; c++) force[c] += slipping[k].springs[c] * far;
+        for (size_t c = 0; c < of_springs.size(); c++) {
+            force[c] += remove(of_springs[c], lane) * far;
+            remove(of_dashpots[c], lane);
+        }
         reference.lane(lane) = position;
-        spare.push_back(slipping[k].number);
-        slipping.erase(slipping.begin() + k);
     }
 
     // −(K y)_i of a column and −(C y)_i, with y_j = value(j) for slipping blocks and 0 for others
     template <class Value>
     BK_INLINE vec springs(int c, Value &&value) const {
-        vec total{};
-        for (const Slipping &block : slipping) total += block.springs[c] * value(block.lane);
-        return total;
+        return sum(of_springs[c], value);
     }
     template <class Value>
     BK_INLINE vec dashpots(int c, Value &&value) const {
-        vec total{};
-        for (const Slipping &block : slipping) total += block.dashpots[c] * value(block.lane);
-        return total;
+        return sum(of_dashpots[c], value);
     }
 
   private:
-    // A slipping block with its columns of −K and −C.
-    struct Slipping {
+    // A slipping block and its part of a column of −K or −C.
+    struct Pull {
         int lane;
-        size_t number;  // of the columns
-        const vec *springs, *dashpots;
+        double strength[COUNT] = {};
+        BK_INLINE vec of() const {
+            vec made;
+            std::memcpy(&made, strength, sizeof made);
+            return made;
+        }
     };
-    int columns = 0;
-    std::vector<Slipping> slipping;  // in ascending order
-    std::vector<size_t> spare;
-    // Columns of −K and −C in the lanes of the group.
-    std::vector<Rows> of_springs, of_dashpots;
+    using Pulls = std::vector<Pull>;             // in ascending order of lanes
+    std::vector<Pulls> of_springs, of_dashpots;  // on each column of the group
 
-    // Number of slipping blocks in lower lanes.
-    int before(int lane) const {
-        int k = 0;
-        while (k < int(slipping.size()) && slipping[k].lane < lane) k++;
-        return k;
+    template <class Value>
+    static BK_INLINE vec sum(const Pulls &pulls, Value &&value) {
+        vec total{};
+        for (const Pull &pull : pulls) total += pull.of() * value(pull.lane);
+        return total;
     }
 
-    void fill(Rows &row, const Springs &springs, const std::vector<double> &joined, const std::vector<double> &own,
-              const std::vector<int> &member, int lane) {
+    static typename Pulls::iterator find(Pulls &pulls, int lane) {
+        return std::lower_bound(pulls.begin(), pulls.end(), lane,
+                                [](const Pull &pull, int wanted) { return pull.lane < wanted; });
+    }
+    // Remove a block and return its part of the column, 0 if there is none.
+    static vec remove(Pulls &pulls, int lane) {
+        const auto at = find(pulls, lane);
+        if (at == pulls.end() || at->lane != lane) return vec{};
+        const vec strength = at->of();
+        pulls.erase(at);
+        return strength;
+    }
+
+    // Add the elements of −K or −C between the block in a lane and itself, and its neighbours in the group.
+    void add(std::vector<Pulls> &pulls, const Springs &springs, const std::vector<double> &joined,
+             const std::vector<double> &own, const std::vector<int> &member, int lane) {
+        int c = -1;
+        double *part = nullptr;
+        auto set = [&](int other, double strength) {
+            if (other / COUNT != c) {
+                c = other / COUNT;
+                auto at = find(pulls[c], lane);
+                if (at == pulls[c].end() || at->lane != lane) at = pulls[c].insert(at, Pull{lane});
+                part = at->strength;
+            }
+            part[other % COUNT] = strength;
+        };
         const int i = member[lane];
-        row.reserve(columns);
-        for (int c = 0; c < columns; c++) row[c] = vec{};
-        int k = 0;
-        for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++) {
-            while (k < int(member.size()) && member[k] < springs.neighbour[p]) k++;
-            if (k < int(member.size()) && member[k] == springs.neighbour[p]) row.lane(k) = joined[p];
+        set(lane, -own[i]);
+        auto at = member.begin();
+        for (int64_t p = springs.start[i]; p < springs.start[i + 1] && at != member.end(); p++) {
+            const int other = springs.neighbour[p];
+            // The blocks of a whole network follow each other.
+            if (*at < other) at = std::lower_bound(at, member.end(), other);
+            if (at != member.end() && *at == other) set(int(at++ - member.begin()), joined[p]);
         }
-        row.lane(lane) = -own[i];
     }
 };
 

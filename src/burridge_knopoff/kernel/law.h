@@ -25,12 +25,12 @@ constexpr double FRICTION_ROUNDING = 1e-12;
 struct Law {
     std::vector<Operation<double>> tape;
     int value, slope;
-    bool linear;       // Φ is the straight line Φ(0) − rate U'
-    bool hyperbolic;   // Φ is a constant plus a multiple of the reciprocal of a straight line, the most common law
-    bool exponential;  // an operation is EXP, see FrictionSeries::shorten
-    double rate;       // −dΦ/dU' at rest
-    double steepest;   // largest modulus of the slope
-    double at_rest;    // Φ(0)
+    bool linear;            // Φ is the straight line Φ(0) − rate U'
+    bool hyperbolic;        // Φ is a constant plus a multiple of the reciprocal of a straight line, the most common law
+    bool exponential;       // an operation is EXP, see FrictionSeries::shorten
+    double rate;            // −dΦ/dU' at rest
+    bool steepest_at_rest;  // whether the modulus of the slope is largest at rest
+    double at_rest;         // Φ(0)
 
     double at(double speed) const {
         double number[64];
@@ -54,7 +54,7 @@ struct Law {
                     made = std::pow(p, o.alpha);
                     break;
                 case EXP:
-                    made = std::exp(p);
+                    made = std::exp(std::min(p, o.beta));
                     break;
                 default:
                     made = std::log(p);
@@ -64,9 +64,10 @@ struct Law {
         return number[value];
     }
 
-    // Whether both laws have the same operations, with any constants.
+    // Whether both laws have the same operations, with any constants, and are bounded in the same way.
     bool is_like(const Law &other) const {
-        if (value != other.value || slope != other.slope || linear != other.linear || tape.size() != other.tape.size())
+        if (value != other.value || slope != other.slope || linear != other.linear ||
+            steepest_at_rest != other.steepest_at_rest || tape.size() != other.tape.size())
             return false;
         for (size_t r = 0; r < tape.size(); r++)
             if (tape[r].code != other.tape[r].code || tape[r].first != other.tape[r].first ||

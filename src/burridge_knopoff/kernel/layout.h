@@ -35,8 +35,12 @@ struct Model {
     bool drops() const { return law.at_rest < 1.0; }
     double coincidence() const { return COINCIDENCE * springs.unit; }
     double young() const { return YOUNG * springs.unit; }
-    // Bound on the rate at which perturbations change.
-    double pace() const { return springs.fastest + springs.firmest * law.steepest + springs.damping_rate; }
+    // Bound on the rate at which perturbations change, but for friction if the law is steeper than at rest: its slope
+    // is then bounded along each piece of the motion, see Tangent.
+    double pace() const {
+        const double slope = law.steepest_at_rest ? std::fabs(law.rate) : 0.0;
+        return springs.fastest + springs.firmest * slope + springs.damping_rate;
+    }
 
     // Whether trajectories of both may lie in the lanes of the same vectors.
     bool is_like(const Model &other) const {
@@ -61,7 +65,7 @@ struct Layout : Lanes<COUNT> {
     // Contribution of stuck neighbours outside the group to ds_i/dτ, see Blocks::outside.
     Rows drift;
     std::vector<mask> present;
-    bool linear, drops, symmetric, damped;
+    bool linear, steepest_at_rest, drops, symmetric, damped;
     Number v, at_rest, rate, coincidence, young, pace, creep_speed;
     Rows weakening;
 
@@ -91,6 +95,7 @@ struct Layout : Lanes<COUNT> {
     // Set what all lanes share.
     void share(const Model &model) {
         linear = model.law.linear;
+        steepest_at_rest = model.law.steepest_at_rest;
         drops = model.drops();
         symmetric = model.symmetric;
         damped = model.springs.damped;
@@ -212,22 +217,38 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
         }
     }
 
+    // Lane k of an array of vectors.
+    static BK_INLINE auto lanes(const vec *x) {
+        return [at = reinterpret_cast<const double *>(x)](int lane) { return at[lane]; };
+    }
+
+    // The springs of an open row in one column. A copy of them, and no other kinds of springs, leaves the compiler
+    // enough registers for a recursion.
+    struct OpenRow {
+        vec left, right, diagonal;
+        BK_INLINE vec pull(vec x) const { return (left * before(x, x) + right * after(x, x)) - diagonal * x; }
+    };
+    bool is_open_row() const { return columns == 1 && row && !closed; }
+    OpenRow open_row() const { return {springs.left[0], springs.right[0], diagonal[0]}; }
+
     // The spring forces on the blocks of a column that follow from positions x (power 0), relative velocities (1), or
     // further coefficients of x in powers of the time, which are 0 for stuck blocks. t : the time of positions
     BK_INLINE vec spring_pull(const vec *x, int power, int c, double t = 0.0) const {
         if (__builtin_expect(row, true)) return pull_in_line(springs, x, c) - diagonal[c] * x[c];
         if (!increments.used) return pull(springs, x, c) - diagonal[c] * x[c];
-        const double *at = reinterpret_cast<const double *>(x);
-        return increments.springs(c, [&](int lane) {
-            return power == 0   ? at[lane] - (increments.reference.lane(lane) - v * t)
-                   : power == 1 ? at[lane] + v
-                                : at[lane];
-        });
+        if (power > 1) return increments.springs(c, lanes(x));
+        return pull_by_increments(x, power, c, t);
+    }
+    // Not inline: it would take the registers of rows, which are much more frequent.
+    __attribute__((noinline)) vec pull_by_increments(const vec *x, int power, int c, double t) const {
+        const auto at = lanes(x);
+        if (power == 1) return increments.springs(c, [&](int lane) { return at(lane) + v; });
+        return increments.springs(c, [&](int lane) { return at(lane) - (increments.reference.lane(lane) - v * t); });
     }
     // −(C u)_i for velocities u, or their rates.
     BK_INLINE vec dashpot_pull(const vec *u, int c) const {
         if (!increments.used) return drag(u, c) - damping_diagonal[c] * u[c];
-        return increments.dashpots(c, [&](int lane) { return reinterpret_cast<const double *>(u)[lane]; });
+        return increments.dashpots(c, lanes(u));
     }
 
     // The pulls of the neighbours on the blocks of one column, by springs or by dashpots.

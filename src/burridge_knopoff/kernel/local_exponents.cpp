@@ -59,7 +59,11 @@ void Run::propagate(Group &group, double to) {
     if (!(to > group.followed)) return;
     Tangent<Blocks> &tangent = exponents.in_group;
     tangent.widen(group.layout.columns);
-    if (!law.law.linear && (expanded != &group || group.followed > 0.0)) restore_friction(group, group.followed);
+    if (!law.law.linear && (expanded != &group || group.followed > 0.0)) {
+        // They are kept for one group only.
+        group.series.restore_friction(group.state, group.followed);
+        expanded = group.followed > 0.0 ? nullptr : &group;
+    }
     const double length = to - group.followed;
     group.followed = to;
     tangent.load(group.state, group.series, length, Blocks::all_lanes(true));
@@ -92,25 +96,6 @@ void Run::exchange(const Group &group, bool out) {
         }
         for (size_t k = n; k < width; k++) own_x[k] = own_u[k] = 0.0;
     }
-}
-
-// Compute the series of friction along a group's piece, about a time of it. They are kept for one group only.
-void Run::restore_friction(const Group &group, double from) {
-    constexpr int ORDER = Blocks::ORDER;
-    const int columns = group.layout.columns;
-    for (int c = 0; c < columns; c++) {
-        const vec along = group.state.slip[c] * group.state.layout.weakening[c];
-        vec speed[ORDER + 1];
-        for (int k = 0; k <= ORDER; k++) speed[k] = along * group.series.velocity[size_t(k) * columns + c];
-        // Repeated Horner scheme.
-        for (int n = 0; n < ORDER && from > 0.0; n++)
-            for (int k = ORDER - 1; k >= n; k--) speed[k] += from * speed[k + 1];
-        for (int k = 0; k <= ORDER; k++) {
-            law.row(0, c)[k] = speed[k];
-            law.fill(c, k, 0, law.law.value);
-        }
-    }
-    expanded = from > 0.0 ? nullptr : &group;
 }
 
 }  // namespace bk

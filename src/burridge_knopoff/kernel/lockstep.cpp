@@ -343,7 +343,8 @@ void Lockstep::sample(double length, int lane) {
     aim(lane);
 }
 
-// Propagate the perturbations along the piece, in parts after which they can be orthonormalised.
+// Propagate the perturbations along the piece, in each lane up to the edge of its batch, where they are
+// orthonormalised, and on from there.
 void Lockstep::follow(vec length) {
     mask moving{};
     for (int i = 0; i < blocks; i++) moving |= state.slip[i] != vec{};
@@ -355,20 +356,40 @@ void Lockstep::follow(vec length) {
         running[lane] = -1;
         exchange(lane, false);
     }
-    const mask where = active & running & moving;
-    tangent.forget_stops(active & running);
-    if (!any(where)) return;
-    tangent.load(state, series, length, where);
+    mask where = active & running;
+    tangent.forget_stops(where);
+    vec from{};
+    for (;;) {
+        const vec edge = largest(from, until(batch_edge));
+        const mask ends = where & (edge < length);
+        const vec to = select(ends, edge, length);
+        if (any(where & moving)) follow(from, to, where & moving);
+        if (!any(ends)) return;
+        for (int lane = 0; lane < LANES; lane++) {
+            if (!ends[lane]) continue;
+            exchange(lane, true);
+            own[lane]->exponents.renew(slip_of(lane), batch_edge[lane], false);
+            exchange(lane, false);
+        }
+        where = ends;
+        from = to;
+        if (!law.law.linear) series.restore_friction(state, from);
+    }
+}
+
+// Propagate them between two times of the piece, in parts after which they can be orthonormalised.
+void Lockstep::follow(vec from, vec to, mask where) {
+    tangent.load(state, series, to - from, where);
     for (int done = 1;; done++) {
         tangent.follow(layout);
         if (tangent.most_parts() <= done) return;
         tangent.move_on(done);
-        vec time = clock;
+        vec time = clock + from;
         mask within{};
         for (int lane = 0; lane < LANES; lane++) {
             const int parts = tangent.parts_of(lane);
             within[lane] = -int64_t(parts > done);
-            time[lane] += done * (length[lane] / parts);
+            time[lane] += done * ((to - from)[lane] / parts);
         }
         orthonormalise(time, within);
     }
@@ -404,6 +425,7 @@ void Lockstep::orthonormalise(vec clock, mask where) {
 // Copy the perturbations of a lane to its run, or from there.
 void Lockstep::exchange(int lane, bool out) {
     Exponents &exponents = own[lane]->exponents;
+    batch_edge[lane] = exponents.next_edge();
     for (int v = 0; v < vectors; v++)
         for (int i = 0; i < blocks; i++) {
             const size_t k = (size_t(v) * blocks + i) * LANES + lane;

@@ -55,7 +55,7 @@ class Lockstep : private Example, public TrajectoryLanes {
     vec end{}, transient{}, batch_begin{}, batch_end{}, distance_time{}, trajectory_time{}, since_event{}, side{},
         ends_apart{}, lower{}, higher{};
     vec highest_speed[2]{}, lowest_force[2]{};  // by Stage
-    vec longest_follow{}, steps{}, most_steps{}, speed_weight{};
+    vec longest_follow{}, batch_edge{}, steps{}, most_steps{}, speed_weight{};
     mask observed{}, averaged{}, compared{}, running{}, halts{}, accumulating{}, changed{};
     std::vector<mask> in_section;
     Trajectories::Rows apart, apart_rate;  // coefficients of d and d'
@@ -76,6 +76,7 @@ class Lockstep : private Example, public TrajectoryLanes {
     void extremes(vec length);
     void sample(double length, int lane);
     void follow(vec length);
+    void follow(vec from, vec to, mask where);
     void orthonormalise(vec clock, mask where);
     void exchange(int lane, bool out);
     void change(int i, mask where);

@@ -59,8 +59,8 @@ nb::ndarray<nb::numpy, T> taken(std::vector<T> &values) {
 Model *new_model(Numbers diagonal, Numbers driving, Numbers threshold, Numbers weakening, Numbers sliding_force,
                  Numbers mass, Array1<int64_t> start, Array1<int64_t> neighbour, Numbers strength, Numbers damping,
                  Numbers damping_diagonal, Numbers damping_load, Array2<int64_t> operations, Table constants, int value,
-                 int slope, bool linear, double rate, double steepest, double v, bool symmetric, double creep_speed,
-                 double rest_speed) {
+                 int slope, bool linear, double rate, bool steepest_at_rest, double v, bool symmetric,
+                 double creep_speed, double rest_speed) {
     auto model = std::make_unique<Model>();
     Springs &springs = model->springs;
     springs.blocks = int(diagonal.size());
@@ -84,7 +84,7 @@ Model *new_model(Numbers diagonal, Numbers driving, Numbers threshold, Numbers w
     model->law.slope = slope;
     model->law.linear = linear;
     model->law.rate = rate;
-    model->law.steepest = steepest;
+    model->law.steepest_at_rest = steepest_at_rest;
     model->law.complete();
     model->v = v;
     model->symmetric = symmetric;
@@ -203,7 +203,7 @@ NB_MODULE(_core, m) {
                       "A chain or network of blocks with its friction law and driver, as the kernel reads it.")
         .def(nb::new_(&new_model), "diagonal"_a, "driving"_a, "threshold"_a, "weakening"_a, "sliding_force"_a, "mass"_a,
              "start"_a, "neighbour"_a, "strength"_a, "damping"_a, "damping_diagonal"_a, "damping_load"_a,
-             "operations"_a, "constants"_a, "value"_a, "slope"_a, "linear"_a, "rate"_a, "steepest"_a, "v"_a,
+             "operations"_a, "constants"_a, "value"_a, "slope"_a, "linear"_a, "rate"_a, "steepest_at_rest"_a, "v"_a,
              "symmetric"_a, "creep_speed"_a = 0.0, "rest_speed"_a = 0.0)
         .def_prop_ro(
             "fastest", [](const Model &model) { return model.springs.fastest; },
@@ -342,6 +342,9 @@ NB_MODULE(_core, m) {
             },
             "growth (batches, vectors), -inf for dropped vectors, duration (batches,), and the number of exponents "
             "-inf.")
+        .def_prop_ro(
+            "steps", [](const Exponents &exponents) { return exponents.tangent.steps + exponents.in_group.steps; },
+            "Number of parts of the motion along which perturbations were propagated.")
         .def_ro("unordered", &Exponents::unordered,
                 "The first two blocks, from 0, whose changes at one instant have an order that matters; -1 for none.")
         .def_ro("unordered_mirrors", &Exponents::unordered_mirrors, "The same, for mirror blocks.")

@@ -8,6 +8,8 @@
 namespace bk {
 
 constexpr double NOTHING = -1e300;
+// J is certainly above a level from which it is this far, relative and absolute: more than rounding.
+constexpr double CLEAR = 1e-9;
 enum Stage { TRANSIENT, WINDOW };
 
 // The measurements of one run.
@@ -59,8 +61,7 @@ struct Observer {
                (next_distance < distance_time.size() && start.until(distance_time[next_distance]) <= to);
     }
 
-    // Add the integral of J between two times of a piece, whose `distance` is loaded, take samples, and compare J with
-    // the levels.
+    // Add the integral of J between two times of a piece, whose `distance` is loaded, and take samples.
     void average(const Clock &start, double from, double to) {
         if (!section_only && to > start.until(transient())) {
             double begins = std::max(from, start.until(edge[batch]));
@@ -77,16 +78,17 @@ struct Observer {
             if (t > to) break;
             distance_sample[next_distance] = distance.value(t);
         }
-        if (!level.empty()) compare(start, from, to);
     }
 
-    // Find when J is last at least at each level between two times of a piece.
-    void compare(const Clock &start, double from, double to) {
+    // Find when J is last at least at each level between two times of a piece, whose `distance` is loaded.
+    // ending : J at the later time within rounding, −∞ if it is not known: far above a level it need not be computed
+    void compare(const Clock &start, double from, double to, double ending = -INFINITY) {
         // A continued run repeats a piece of the previous run.
         from = std::max(from, start.until(begin));
         if (!(from <= to)) return;
         const double most = higher < INFINITY ? distance.bound(to) : 0.0;
-        if (lower == -INFINITY && most < higher) return;
+        const bool stays = lower == -INFINITY || ending - lower > CLEAR * (1.0 + lower);
+        if (stays && most < higher) return;
         const double ends = distance.value(to);
         if (ends >= lower && most < higher) return;
         lower = -INFINITY;

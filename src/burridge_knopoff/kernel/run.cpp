@@ -356,6 +356,7 @@ int Run::run_whole() {
         now = group.start.after(length);
         since_event += length;
         if (group.length > remaining && !exponents.running) {
+            if (observing) observer.compare(group.start, group.observed, length);
             if (catalogue) group.record(*catalogue, polynomial, group.observed, length, false);
             group.observed = length;
             since_event -= length;
@@ -430,7 +431,13 @@ bool Run::load_next(Group &group) {
 
 // Advance the state along the piece; in closed form, from the last event.
 void Run::advance(Group &group, double length) {
+    const Clock start = group.start;
     group.advance(length);
+    if (observing) {
+        const double *x = &group.state.position.lane(0), *u = &group.state.velocity.lane(0);
+        const double apart = observer.apart + (x[blocks - 1] - x[0]), rate = u[blocks - 1] - u[0];
+        observer.compare(start, group.observed, length, std::sqrt(apart * apart + rate * rate));
+    }
     if (catalogue) group.record(*catalogue, polynomial, group.observed, length, true);
     group.observed = length;
     if (modes) modes->advance(group.state, since_event);
@@ -476,20 +483,34 @@ void Run::observe(Group &group, double to) {
     }
 }
 
-// Propagate the perturbations along a piece, in parts after which they can be orthonormalised.
+// Propagate the perturbations along a piece, up to each edge of a batch, where they are orthonormalised.
 void Run::follow(Group &group, double length) {
     exponents.forget_stops();
+    double from = 0.0;
+    // The loading clock, which defines the batches, stops while blocks slip under quasi-static loading.
+    while (loading == 0.0) {
+        const double edge = exponents.next_edge(), to = std::max(from, group.start.until(edge));
+        if (!(to < length)) break;
+        follow(group, from, to);
+        exponents.renew(group.slip(), edge, false);
+        from = to;
+    }
+    follow(group, from, length);
+}
+
+// Propagate them between two times of the piece, in parts after which they can be orthonormalised.
+void Run::follow(Group &group, double from, double to) {
     // Nothing changes while all blocks stick, however slow the driver is.
     if (exponents.stuck(group.slip()) == blocks) return;
-    exponents.tangent.load(group.state, group.series, length, Blocks::all_lanes(true));
+    if (from > 0.0 && !law.law.linear) group.series.restore_friction(group.state, from);
+    exponents.tangent.load(group.state, group.series, to - from, Blocks::all_lanes(true));
     const int parts = exponents.tangent.parts_of(0);
-    // The loading clock, which defines the batches, stops while blocks slip under quasi-static loading.
-    const double part = loading > 0.0 ? 0.0 : length / parts;
+    const double part = loading > 0.0 ? 0.0 : (to - from) / parts;
     for (int k = 1; k <= parts; k++) {
         exponents.tangent.follow(group.layout);
         if (k == parts) break;
         exponents.tangent.move_on(k);
-        exponents.follow(group.slip(), loading_clock(group.start).time + k * part, false);
+        exponents.follow(group.slip(), (loading_clock(group.start).time + from) + k * part, false);
     }
 }
 

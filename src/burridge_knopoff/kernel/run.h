@@ -238,6 +238,7 @@ class Run {
     void advance(Group &group, double length);
     void observe(Group &group, double to);
     void follow(Group &group, double length);
+    void follow(Group &group, double from, double to);
 
     // Many groups, in groups.cpp.
     int run_groups();
@@ -270,7 +271,6 @@ class Run {
     void pass_edges(const Clock &next, bool completed);
     void propagate(Group &group, double to);
     void exchange(const Group &group, bool out);
-    void restore_friction(const Group &group, double from);
     // The directions in which all blocks slip, and how many stick.
     std::vector<double> directions;
     int sticking = 0;

@@ -146,6 +146,24 @@ struct Series {
         return polynomial;
     }
 
+    // Compute the series of friction along the piece again, about a time of it. They are otherwise those of the piece
+    // that was expanded last, about its start.
+    void restore_friction(const State<L> &state, const Number &from) {
+        const bool later = any(vec{} + from > vec{});
+        for (int c = 0; c < columns; c++) {
+            const vec along = state.slip[c] * layout.weakening[c];
+            vec speed[ORDER + 1];
+            for (int k = 0; k <= ORDER; k++) speed[k] = along * u(k)[c];
+            // Repeated Horner scheme.
+            for (int n = 0; n < ORDER && later; n++)
+                for (int k = ORDER - 1; k >= n; k--) speed[k] += from * speed[k + 1];
+            for (int k = 0; k <= ORDER; k++) {
+                law.row(0, c)[k] = speed[k];
+                law.fill(c, k, 0, law.law.value);
+            }
+        }
+    }
+
     // Advance the state by t where `moved` is set.
     void move(State<L> &state, vec t, mask moved) {
         const vec zero{};
@@ -225,11 +243,14 @@ struct Series {
     void rows(const State<L> &state) {
         constexpr int FEW = L::ONE_CLOCK ? 1 : 3, FEWER = L::ONE_CLOCK ? 1 : 2;
         if (layout.damped) return fill<KIND, 0, true>(state);
+        if constexpr (L::ONE_CLOCK)
+            if (layout.is_open_row()) return fill<KIND, 1, false, true>(state);
         columns == FEW ? fill<KIND, FEW>(state) : columns == FEWER ? fill<KIND, FEWER>(state) : fill<KIND, 0>(state);
     }
 
     // COLUMNS : the number of columns, 0 for any. If it is known, the compiler keeps a row in registers.
-    template <Kind KIND, int COLUMNS, bool DAMPED = false>
+    // OPEN : whether the blocks are an open row in one column
+    template <Kind KIND, int COLUMNS, bool DAMPED = false, bool OPEN = false>
     void fill(const State<L> &state) {
         const int count = COLUMNS ? COLUMNS : columns;
         Column known[COLUMNS ? COLUMNS : 1];
@@ -254,6 +275,8 @@ struct Series {
             }
             at.pressed = KIND == HYPERBOLIC_LAW ? pressed[c] : signed_threshold[c];
         }
+        Blocks::OpenRow open;
+        if constexpr (OPEN) open = layout.open_row();
         vec *position = x(2), *velocity = u(2), *g = this->g(1);
         const size_t step = COLUMNS ? COLUMNS : columns, gap_step = width;
         auto row = [&](auto n) __attribute__((always_inline)) {
@@ -281,7 +304,10 @@ struct Series {
                 position[c] = speed * factor;
             }
             for (int c = 0; c < count; c++) {
-                own[c].force = layout.spring_pull(position, n + 1, c);
+                if constexpr (OPEN)
+                    own[c].force = open.pull(position[c]);
+                else
+                    own[c].force = layout.spring_pull(position, n + 1, c);
                 if constexpr (DAMPED) own[c].force += state.damping(velocity, c);
             }
             position += step;

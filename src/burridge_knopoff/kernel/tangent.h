@@ -30,6 +30,7 @@ class Tangent {
 
     const int vectors;
     int columns;
+    long long steps = 0;  // parts of the motion along which perturbations were propagated
     // Vector v has its blocks in the lanes of the columns from v · columns on.
     Rows position, velocity;
 
@@ -103,14 +104,15 @@ class Tangent {
     // where : clocks whose perturbations are propagated
     void load(const State<L> &state, Series<L> &series, const Number &length, mask where) {
         const L &layout = state.layout;
-        const Number turn = layout.pace * length;
+        const Number pace = layout.steepest_at_rest ? layout.pace : pace_along(layout, series, length),
+                     turn = pace * length;
         Number count{}, terms{};
         for (int k = 0; k < CLOCKS; k++) {
             parts[k] = where[k] ? 1 + int(L::of_lane(turn, k) / STRIDE) : 1;
             L::set_lane(count, k, parts[k]);
         }
         part = length / count;
-        const Number x = (layout.linear ? layout.pace : SLOWER * layout.pace) * part;
+        const Number x = (layout.linear ? pace : SLOWER * pace) * part;
         for (int n = 2; n < LENGTH - 1; n += 2) terms += x > ENOUGH.at[n] ? Number{} + 2.0 : Number{};
         for (int k = 0; k < CLOCKS; k++) {
             degree[k] = rate_terms[k] = 0;
@@ -131,7 +133,7 @@ class Tangent {
             if (layout.linear)
                 rates[size_t(c) * LENGTH] = pull_scale[c] * (layout.threshold[c] * (layout.weakening[c] * layout.rate));
         }
-        for (int first = 0; !layout.linear;) {
+        for (int first = layout.steepest_at_rest ? 0 : L::ORDER; !layout.linear;) {
             const int terms = *std::max_element(rate_terms, rate_terms + CLOCKS);
             int fewest = terms;
             for (int k = 0; k < CLOCKS; k++)
@@ -146,7 +148,7 @@ class Tangent {
                 enough = false;
             }
             if (enough) return;
-            first = terms;
+            first = std::max(first, terms);
         }
     }
 
@@ -168,6 +170,7 @@ class Tangent {
 
     // Propagate over one part of a piece that `load` has prepared.
     void follow(const L &layout) {
+        steps++;
         int v = 0;
         // Several at once, to be computed in parallel.
         for (; v + 3 <= vectors; v += 3) {
@@ -222,6 +225,25 @@ class Tangent {
         return made;
     }
 
+    // Bound on the rate at which perturbations change along a piece: the slope of friction is at most the sum of the
+    // moduli of its terms. Its series is completed. A bound for all speeds up to the largest allowed one would divide
+    // the pieces of a law with a high power of the speed into hundreds of parts.
+    Number pace_along(const L &layout, Series<L> &series, const Number &length) const {
+        vec fastest{};
+        for (int c = 0; c < columns; c++) {
+            series.law.complete_slope(c, 0, L::ORDER);
+            const vec *slope = series.law.row(series.law.law.slope, c);
+            vec steepest{};
+            for (int n = L::ORDER - 1; n >= 0; n--) steepest = steepest * length + magnitude(slope[n]);
+            const vec factor = layout.threshold[c] * layout.weakening[c] * layout.inverse_mass[c];
+            fastest = largest(fastest, series.slipping[c] * magnitude(factor) * steepest);
+        }
+        if constexpr (L::ONE_CLOCK)
+            return layout.pace + largest_lane(fastest);
+        else
+            return layout.pace + fastest;
+    }
+
     // Expand the rates of a column: `terms` of them, of which `fewest` are retained for all clocks.
     void expand_rates(const State<L> &state, Series<L> &series, int c, int first, int fewest, int terms) {
         const L &layout = state.layout;
@@ -258,7 +280,7 @@ class Tangent {
     void propagate(const L &layout, int v) {
         if (layout.damped) return propagate_columns<COUNT, 0, true>(layout, v);
         if constexpr (L::ONE_CLOCK) {
-            if (columns == 1 && layout.row && !layout.closed) return propagate_column<COUNT, true>(layout, v);
+            if (layout.is_open_row()) return propagate_column<COUNT, true>(layout, v);
             if (columns == 1) return propagate_column<COUNT, false>(layout, v);
         } else {
             if (columns == 2 && layout.row) return propagate_columns<COUNT, 2>(layout, v);
@@ -304,7 +326,8 @@ class Tangent {
     void propagate_column(const L &layout, int v) {
         const int degree = this->degree[0];
         const vec *rate = rates.at(), first_rate = rate[0], scale = pull_scale[0], diagonal = layout.diagonal[0];
-        const vec left = OPEN ? layout.springs.left[0] : vec{}, right = OPEN ? layout.springs.right[0] : vec{};
+        Blocks::OpenRow open;
+        if constexpr (OPEN) open = layout.open_row();
         vec *speed = speeds.at(), x[COUNT], u[COUNT], position[COUNT], velocity[COUNT];
         for (int i = 0; i < COUNT; i++) {
             x[i] = position[i] = this->position[v + i];
@@ -319,12 +342,12 @@ class Tangent {
             else
                 complete<COUNT>(rate, speed + (n - 1) * COUNT, rate_terms[0], later, change);
             for (int i = 0; i < COUNT; i++) {
-                vec pull;
+                vec force;
                 if constexpr (OPEN)
-                    pull = left * before(x[i], x[i]) + right * after(x[i], x[i]);
+                    force = open.pull(x[i]);
                 else
-                    pull = layout.pull(x + i, 0);
-                change[i] += scale * (pull - diagonal * x[i]);
+                    force = layout.pull(x + i, 0) - diagonal * x[i];
+                change[i] += scale * force;
                 const vec next = (change[i] + first_rate * u[i]) * factor;
                 x[i] = u[i] * (part * factor);
                 position[i] += x[i];

@@ -220,6 +220,7 @@ class TimeStepping {
             observer.distance.position[0] += observer.apart;
             observer.distance.begin(3);
             observer.average(start, 0.0, h);
+            observer.compare(start, 0.0, h);
         }
         if (h > start.until(observer.transient())) {
             polynomial.degree = 3;

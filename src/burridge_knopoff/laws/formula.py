@@ -13,6 +13,8 @@ from burridge_knopoff.messages import cut
 from burridge_knopoff.values import number_in
 
 FUNCTIONS = ("sqrt", "exp", "log", "tanh")
+#: Most characters of a formula that a user gives.
+MOST_CHARACTERS = 400
 SYNTAX = "decimal numbers, names, + - * / **, parentheses, " + ", ".join(f"{name}()" for name in FUNCTIONS)
 
 # Formulas appear in commands and files: one line of ASCII, since letters of other alphabets may look the same.
@@ -29,13 +31,15 @@ def formula_names(formula: str) -> frozenset[str]:
     return frozenset(re.findall(r"\b[A-Za-z_]\w*", formula)) - set(FUNCTIONS)
 
 
-def compile_formula(formula: str, values: Mapping[str, float], variable: str = "u") -> Tape:
+def compile_formula(
+    formula: str, values: Mapping[str, float], variable: str = "u", longest: int = MOST_CHARACTERS
+) -> Tape:
     """Return the tape of a formula in the speed u, or in another variable.
 
-    values : values of all other names, for a law including `a`
-    Raises FormulaError for syntax that is not allowed in a formula, and for names without a value.
+    values : values of all other names, for a law including `a`; longest : most characters of the formula
+    Raises FormulaError for syntax that is not allowed in a formula, for more characters, and for names without a value.
     """
-    tree, builder = _tree(formula), Builder()
+    tree, builder = _tree(formula, longest), Builder()
     try:
         terms = {variable: SPEED} | {key: number(x) for key, x in values.items()}
         return builder.tape(_Reader(builder, formula.strip(), terms).read(tree))
@@ -47,14 +51,16 @@ def formula_value(formula: str, values: Mapping[str, float]) -> float:
     """Return the value of a formula in which every name has a value; raises FormulaError as `compile_formula` does."""
     names = {key: number(x) for key, x in values.items()}
     try:
-        return float(_Reader(Builder(), formula.strip(), names).read(_tree(formula)).shift)
+        return float(_Reader(Builder(), formula.strip(), names).read(_tree(formula, MOST_CHARACTERS)).shift)
     except (OverflowError, ZeroDivisionError):
         raise FormulaError("a term is not finite") from None
 
 
 @lru_cache(maxsize=64)
-def _tree(formula: str) -> ast.Expression:
+def _tree(formula: str, longest: int) -> ast.Expression:
     """Return the syntax tree of a formula, which is not to be changed; raises FormulaError for wrong syntax."""
+    if len(formula) > longest:
+        raise FormulaError(f"at most {longest} characters")
     if not _ALLOWED.fullmatch(formula):
         raise FormulaError(f"not a formula: {SYNTAX}")
     try:

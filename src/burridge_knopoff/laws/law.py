@@ -15,7 +15,7 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from burridge_knopoff.laws.formula import FormulaError, compile_formula, formula_names
+from burridge_knopoff.laws.formula import MOST_CHARACTERS, FormulaError, compile_formula, formula_names
 from burridge_knopoff.laws.tape import Tape
 from burridge_knopoff.messages import format_value, full_key, refusal
 from burridge_knopoff.values import Unchanging, instance_of, real_array, real_number
@@ -61,7 +61,7 @@ class Law(Unchanging):
     #: The parameters in the formula other than a, with their defaults.
     defaults: ClassVar[Mapping[str, float]] = {}
     #: Maximum length of the formula in characters.
-    max_length: ClassVar[int] = 400
+    max_length: ClassVar[int] = MOST_CHARACTERS
 
     def __init__(self, a: float | None = None, /, *, name: str = "", **parameters: float) -> None:
         self.name = name or type(self).__module__.rpartition(".")[2]
@@ -100,8 +100,6 @@ class Law(Unchanging):
             ) from None
 
     def _check(self) -> None:
-        if len(self.formula) > self.max_length:
-            raise FormulaError(f"at most {self.max_length} characters")
         if not self.tape.is_analytic(0.0, MAX_SPEED):
             raise FormulaError(f"the formula is not analytic and finite for all speeds u from 0 to {MAX_SPEED:g}")
         start = float(self(0.0))
@@ -154,7 +152,8 @@ class Law(Unchanging):
     @cached_property
     def tape(self) -> Tape:
         """The operations that compute Φ and its slope from a speed."""
-        return compile_formula(self.formula, {**({"a": self.a} if self.has_a else {}), **self.parameters})
+        values = {**({"a": self.a} if self.has_a else {}), **self.parameters}
+        return compile_formula(self.formula, values, longest=self.max_length)
 
     def __call__(self, speed: ArrayLike) -> np.ndarray:
         """Return Φ at speeds U', elementwise; they are below 0 only for blocks with negative weakening."""
@@ -189,10 +188,9 @@ class Law(Unchanging):
         """Return the least friction at speeds from 0 to `fastest`."""
         speed = fastest * _FRACTIONS
         # A diverging run may reach speeds at which the law is not defined.
-        with np.errstate(invalid="ignore"):
-            friction = self(speed)
-            lowest = int(np.where(np.isnan(friction), np.inf, friction).argmin())
-            around = self.slope(speed[max(lowest - 1, 0) : lowest + 2])
+        friction = self(speed)
+        lowest = int(np.where(np.isnan(friction), np.inf, friction).argmin())
+        around = self.slope(speed[max(lowest - 1, 0) : lowest + 2])
         # Where friction is constant up to rounding, the slope does not change sign.
         if not (len(around) == 3 and around[0] < 0.0 < around[2]):
             return float(friction[lowest])

@@ -18,9 +18,13 @@ import numpy as np
 
 from burridge_knopoff.values import read_only_copy
 
-#: The result of an operation on its registers p and q: α p + β q + γ, α p q, α / p, p^α, α exp p, α log p.
+#: The result of an operation on its registers p and q: α p + β q + γ, p q, 1/p, p^α, exp min(p, β), log p.
 CODES = ("linear", "multiply", "reciprocal", "power", "exp", "log")
 LINEAR, MULTIPLY, RECIPROCAL, POWER, EXP, LOG = range(len(CODES))
+
+# Argument beyond which the exponential in tanh counts as constant. Its reciprocal is below rounding from 50 on, and
+# stays so along a piece of the motion (SPENT in kernel/friction_series.h).
+SATURATED = 200.0
 
 # An interval that is not proved free of singularities after this many halvings counts as having one.
 MAX_DEPTH = 12
@@ -113,17 +117,19 @@ class Builder:
                 result = self.multiply(result, p)
         return result
 
-    def exp(self, p: Term) -> Term:
-        """Return exp p."""
-        return number(math.exp(p.shift)) if p.is_number else self._make(Operation(EXP, self.register(p)))
+    def exp(self, p: Term, saturated: float = math.inf) -> Term:
+        """Return exp p, constant for p above `saturated`."""
+        if p.is_number:
+            return number(math.exp(min(p.shift, saturated)))
+        return self._make(Operation(EXP, self.register(p), beta=saturated))
 
     def log(self, p: Term) -> Term:
         """Return the natural logarithm of p."""
         return number(math.log(p.shift)) if p.is_number else self._make(Operation(LOG, self.register(p)))
 
     def tanh(self, p: Term) -> Term:
-        """Return tanh p as 2/(1 + exp(−2p)) − 1, which does not overflow for large p."""
-        falling = self.exp(self.multiply(number(-2.0), p))
+        """Return tanh p as 2/(1 + exp(−2p)) − 1."""
+        falling = self.exp(self.multiply(number(-2.0), p), SATURATED)
         half = self.reciprocal(self.add(number(1.0), falling))
         return self.add(self.multiply(number(2.0), half), number(-1.0))
 
@@ -181,20 +187,24 @@ class Tape:
         functions : module with `exp` and `log`: numpy for arrays, mpmath for its numbers
         """
         registers = [speed]
-        for item in self.operations:
-            p, q = registers[item.first], registers[item.second]
-            if item.code == LINEAR:
-                value = item.alpha * p + item.gamma
-                value = value + item.beta * q if item.second >= 0 else value
-            elif item.code == MULTIPLY:
-                value = p * q
-            elif item.code == RECIPROCAL:
-                value = 1.0 / p
-            elif item.code == POWER:
-                value = p**item.alpha
-            else:
-                value = (functions.exp if item.code == EXP else functions.log)(p)
-            registers.append(value)
+        # Parts of a law may overflow where the law does not.
+        with np.errstate(all="ignore"):
+            for item in self.operations:
+                p, q = registers[item.first], registers[item.second]
+                if item.code == LINEAR:
+                    value = item.alpha * p + item.gamma
+                    value = value + item.beta * q if item.second >= 0 else value
+                elif item.code == MULTIPLY:
+                    value = p * q
+                elif item.code == RECIPROCAL:
+                    value = 1.0 / p
+                elif item.code == POWER:
+                    value = p**item.alpha
+                elif item.code == EXP:
+                    value = functions.exp(np.minimum(p, item.beta) if functions is np else p)
+                else:
+                    value = functions.log(p)
+                registers.append(value)
         return registers[self.value], registers[self.slope]
 
     def is_analytic(self, low: float, high: float, depth: int = 0) -> bool:
@@ -239,6 +249,6 @@ _ENDS: dict[int, Callable[[Operation, Sequence[float], Sequence[float]], list[fl
     MULTIPLY: _product_ends,
     RECIPROCAL: lambda item, p, q: [1.0 / x for x in p],
     POWER: lambda item, p, q: [x**item.alpha for x in p],
-    EXP: lambda item, p, q: [math.exp(x) for x in p],
+    EXP: lambda item, p, q: [math.exp(min(x, item.beta)) for x in p],
     LOG: lambda item, p, q: [math.log(x) for x in p],
 }

@@ -51,7 +51,7 @@ class Catalogue(SlipEvents):
 
     def __repr__(self) -> str:
         return (
-            f"<Catalogue of {len(self.time)} slip events of {self.model.blocks} blocks, {self.model.law.name} law, "
+            f"<Catalogue of {len(self.time)} slip events of {self.model.blocks} blocks, {self.model.words}, "
             f"τ = {self.begin_time:g} to {self.end_time:g}, "
             f"{early_end(self.status, self.final.time) or self.status.name.lower()}>"
         )

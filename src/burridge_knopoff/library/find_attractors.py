@@ -49,7 +49,9 @@ def find_attractors(
     The indices have shape (samples + len(starts),), sampled states first; −1 if a state does not settle on a known
     attractor. Uniform sliding is among the attractors wherever it attracts. Another attractor that no state reaches is
     not found. Attractors are identified by the states at the stops of the outermost block that stops regularly, those
-    without stops by the states at the maxima of its velocity. Raises ValueError, one line, for a wrong argument.
+    without stops by the states at the maxima of its velocity. Chaos is followed by an ensemble: `lifetime` says how
+    many trajectories left it in which time. If it is not shown to last, its kind is TRANSIENT_CHAOS, and the states
+    that reach it have its index. Raises ValueError, one line, for a wrong argument.
 
     Times are in units of 1/ω. docs/search.md describes the search.
 

@@ -33,7 +33,7 @@ class Run(Trajectory):
     >>> simulate("linearized", 0.08, "plus").motion().kind.words
     'periodic'
     >>> simulate("linearized", 0.1, transient=100, window=20).catalogue(100)
-    <Catalogue of 17 slip events of 3 blocks, linearized law, τ = 120 to 220, completed>
+    <Catalogue of 17 slip events of 3 blocks, linearized law, a = 0.1, τ = 120 to 220, completed>
     """
 
     @property

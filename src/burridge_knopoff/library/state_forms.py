@@ -17,6 +17,7 @@ from burridge_knopoff.model.initial import (
     PAPER_STATES,
     STATE_NAME,
     InitialState,
+    StartedState,
     has_paper_numbers,
     initial_state,
 )
@@ -41,6 +42,9 @@ def given_state(initial: Any, key: str = "initial") -> InitialState:
     Raises ValueError, one line, for anything else, and for other values under one of the paper's names.
     """
     state = initial if isinstance(initial, InitialState) else _state(initial, key)
+    if isinstance(state, StartedState):
+        # In another model the numbers are not those of the paper's state.
+        return replace(state, name=OWN) if state.name in PAPER_STATES else state
     if state.name in PAPER_STATES and not has_paper_numbers(state):
         raise refusal(f"{key}.name", state.name, "another name: the paper has a different state of that name")
     return state
@@ -111,10 +115,20 @@ def state_in(model: Model, initial: Initial, key: str = "initial") -> InitialSta
         if remark:
             warnings.warn(remark, stacklevel=4)
         return state
+    if isinstance(initial, StartedState):
+        return _restarted(model, initial)
     if not isinstance(initial, ChainState):
         return given_state(initial, key)
     check_state(model, initial)
     return initial
+
+
+def _restarted(model: Model, state: StartedState) -> InitialState:
+    """Return the state from which a run started as that of another run: the paper's, if it has these numbers at v."""
+    paper = PAPER_STATES.get(state.name)
+    if paper and np.array_equal(model.initial_coordinates(paper), state.coordinates(model.blocks)):
+        return paper
+    return given_state(state)
 
 
 def final_state(model: Model, run: Trajectory, key: str = "initial") -> tuple[ChainState, str]:

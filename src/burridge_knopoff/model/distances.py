@@ -81,8 +81,7 @@ def springs_by_distance(
     if count > MOST_SPRINGS:
         raise ValueError(f"chain.springs: got {count:.2g} springs, expected at most {MOST_SPRINGS:.0e}: set cut_off")
     distance = np.hypot(*np.array(steps, dtype=float).reshape(-1, 2).T)
-    with np.errstate(all="ignore"):
-        values = np.broadcast_to(compile_formula(keys["distance"], {}, "r").run(distance)[0], distance.shape)
+    values = np.broadcast_to(compile_formula(keys["distance"], {}, "r").run(distance)[0], distance.shape)
     fits = (values >= strength.least) & (values <= strength.most)
     if not fits.all():
         k = np.argmin(np.where(fits, np.inf, distance))

@@ -90,8 +90,8 @@ class PaperState(InitialState):
     """
 
 
-class ContinuedState(InitialState):
-    """The state of another run, from which a run continues: any numbers, since only a state of a user has a range."""
+class StartedState(InitialState):
+    """The state from which a run started: any numbers, since only a state of a user has a range."""
 
     def __post_init__(self) -> None:
         pass

@@ -8,11 +8,11 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from burridge_knopoff.laws import Law
+from burridge_knopoff.laws import FormulaLaw, Law
 from burridge_knopoff.laws.law import MAX_SPEED
 from burridge_knopoff.messages import format_value, full_key, refusal
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
-from burridge_knopoff.model.fields import check_fields, settings
+from burridge_knopoff.model.fields import check_fields, fields_of, settings
 from burridge_knopoff.model.initial import PAPER_V, InitialState, PaperState
 from burridge_knopoff.model.parameters import (
     CHAIN_PARAMETERS,
@@ -108,6 +108,24 @@ class Model(Unchanging):
     def place(self) -> str:
         """The model in messages: a, or v under a law without a."""
         return f"a = {self.a!r}" if self.law.has_a else f"v = {self.v!r}"
+
+    @property
+    def words(self) -> str:
+        """The model in a line: its law and a, and all that is not the paper's except the number of blocks.
+
+        >>> from burridge_knopoff import Chain, Model, law_of
+        >>> Model(Chain(3, mass=(1.0, 1.0, 1.2)), law_of("stribeck", 0.08, {"sigma": 0.02}), 0.5).words
+        'stribeck law, a = 0.08, sigma = 0.02, v = 0.5, mass = (1.0, 1.0, 1.2)'
+        """
+        law, defaults = self.law, self.law.defaults
+        values: dict[str, Any] = {"a": law.a} if law.has_a else {}
+        values |= {key: value for key, value in law.parameters.items() if value != defaults.get(key)}
+        for part in (self, self.chain):
+            for key, of_model in fields_of(type(part)).items():
+                if key != "blocks" and getattr(part, key) not in (of_model.default, None):
+                    values[key] = getattr(part, key)
+        own = f" {law.formula}" if isinstance(law, FormulaLaw) else ""
+        return ", ".join([f"{law.name} law{own}", *(f"{key} = {format_value(value)}" for key, value in values.items())])
 
     def parameter(self, name: str) -> float:
         """Return the value of a parameter.

@@ -8,13 +8,12 @@ Y`, with the key of the part at fault, such as `initial.minus.position[1]`.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.laws.formula import FormulaError, formula_names, formula_value
 from burridge_knopoff.messages import full_key, refusal, suggestion
 from burridge_knopoff.values import elements, real_number, scalar
 
@@ -171,42 +170,6 @@ class Interval(Range):
 
     def __str__(self) -> str:
         return f"[low, high] with low < high, each {self.ends}"
-
-
-@dataclass(eq=False, repr=False)
-class IntervalAtSpeed(Interval):
-    """An interval [low, high], each end a number or a formula of the driver velocity v, such as `v - 2`.
-
-    In its form a formula without v is its value.
-    """
-
-    def _fit(self, value: Any, key: str) -> tuple[Any, Any] | None:
-        ends = elements(value) or ()
-        if len(ends) != 2 or not any(isinstance(end, str) for end in ends):
-            return super()._fit(value, key)
-        numbers = [self._end_at(end, 1.0, f"{key}[{place}]") for place, end in enumerate(ends)]
-        of_v = [isinstance(end, str) and "v" in formula_names(end) for end in ends]
-        if not any(of_v):
-            return super()._fit(numbers, key)
-        low, high = (end if varies else number for end, number, varies in zip(ends, numbers, of_v, strict=True))
-        return low, high
-
-    def at(self, value: Sequence[float | str], v: float, key: str) -> tuple[float, float]:
-        """Return an interval of this range at a velocity v; raises ValueError, one line, if it is none there."""
-        low, high = self.form([self._end_at(end, v, f"{key}[{place}]") for place, end in enumerate(value)], key)
-        return low, high
-
-    def _end_at(self, end: Any, v: float, key: str) -> float:
-        if not isinstance(end, str):
-            number: float = self.ends.form(end, key)
-            return number
-        try:
-            return formula_value(end, {"v": v})
-        except FormulaError as error:
-            raise refusal(key, end, f"{self.ends} or a formula of v: {error}") from None
-
-    def __str__(self) -> str:
-        return f"{super().__str__()} or a formula of v"
 
 
 @dataclass(eq=False, repr=False)

@@ -4,17 +4,59 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import numpy as np
 
+from burridge_knopoff.laws.formula import FormulaError, compile_formula, formula_names, formula_value
+from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.initial import COORDINATE, InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.model.ranges import Interval, IntervalAtSpeed, Number, Whole
+from burridge_knopoff.model.ranges import Interval, Number, Whole
+from burridge_knopoff.values import elements
 
 #: Default box: (low, high) of all initial positions U_i(0), and of all initial velocities U_i'(0).
 POSITIONS = (-1.5, 1.5)
 VELOCITIES = (0.0, 0.2)
+
+
+@dataclass(eq=False, repr=False)
+class IntervalAtSpeed(Interval):
+    """An interval [low, high], each end a number or a formula of the driver velocity v, such as `v - 2`.
+
+    In its form a formula without v is its value.
+    """
+
+    def _fit(self, value: Any, key: str) -> tuple[Any, Any] | None:
+        ends = elements(value) or ()
+        if len(ends) != 2:
+            return super()._fit(value, key)
+        low, high = (self._end(end, f"{key}[{place}]") for place, end in enumerate(ends))
+        return (low, high) if isinstance(low, str) or isinstance(high, str) else super()._fit((low, high), key)
+
+    def at(self, value: Sequence[float | str], v: float, key: str) -> tuple[float, float]:
+        """Return an interval of this range at a velocity v; raises ValueError, one line, if it is none there."""
+        low, high = self.form([self._end(end, f"{key}[{place}]", v) for place, end in enumerate(value)], key)
+        return low, high
+
+    def _end(self, end: Any, key: str, v: float | None = None) -> float | str:
+        """Return an end at a velocity; without one, a formula of v stays a formula."""
+        if not isinstance(end, str):
+            number: float = self.ends.form(end, key)
+            return number
+        try:
+            if v is None and "v" in formula_names(end):
+                compile_formula(end, {}, "v")
+                return end
+            return formula_value(end, {"v": v or 0.0})
+        except FormulaError as error:
+            raise refusal(key, end, f"{self.ends} or a formula of v: {error}") from None
+
+    def __str__(self) -> str:
+        return f"{super().__str__()} or a formula of v"
+
 
 #: Ranges of the box and of the number of states.
 POSITION = Interval(COORDINATE)

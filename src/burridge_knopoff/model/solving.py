@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +18,10 @@ _CORRECTIONS = 20
 #: Relative error at which a solution is correct to twice the precision of a double.
 _TOLERANCE = 1e-31
 _SPLITTER = 2.0**27 + 1.0
+#: Share of elements other than 0 from which on a matrix is factorized as a full one.
+_FULL = 0.25
+#: Elements of a matrix that are multiplied at a time.
+_ELEMENTS = 100_000
 
 
 def solve_tridiagonal(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarray) -> np.ndarray:
@@ -59,20 +65,17 @@ def _period(values: np.ndarray) -> int:
 
 
 def nearest_solution(matrix: csr_array, load: np.ndarray) -> np.ndarray:
-    """Return the doubles nearest to the exact solution of a sparse, positive definite system.
+    """Return the doubles nearest to the exact solution of a positive definite system.
 
-    The rounding errors of SuperLU differ from run to run. Iterative refinement in twice the precision makes the result
-    independent of them, and as symmetric as the system.
+    The rounding errors of SuperLU and LAPACK differ from run to run. Iterative refinement in twice the precision makes
+    the result independent of them, and as symmetric as the system.
 
     Reference: N. J. Higham, Accuracy and Stability of Numerical Algorithms (2002), chapter 12.
     """
-    from scipy.sparse.linalg import splu
-
-    options = {"SymmetricMode": True, "Equil": False}
-    factors = splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
-    high, low, last = factors.solve(load), np.zeros(len(load)), np.inf
+    solve = _approximate_solver(matrix)
+    high, low, last = solve(load), np.zeros(len(load)), np.inf
     for _ in range(_CORRECTIONS):
-        change = factors.solve(_residual(matrix, load, high, low))
+        change = solve(_residual(matrix, load, high, low))
         size = float(np.abs(change).max())
         if not size < 0.5 * last:
             break
@@ -81,6 +84,18 @@ def nearest_solution(matrix: csr_array, load: np.ndarray) -> np.ndarray:
         if size <= _TOLERANCE * float(np.abs(high).max()):
             break
     return high
+
+
+def _approximate_solver(matrix: csr_array) -> Callable[[np.ndarray], np.ndarray]:
+    if matrix.nnz > _FULL * matrix.shape[0] ** 2:
+        from scipy.linalg import lu_factor, lu_solve
+
+        return partial(lu_solve, lu_factor(matrix.toarray(), overwrite_a=True))
+    from scipy.sparse.linalg import splu
+
+    options = {"SymmetricMode": True, "Equil": False}
+    factors = splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+    return factors.solve
 
 
 def _sum(high: np.ndarray, low: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -105,14 +120,21 @@ def _residual(matrix: csr_array, load: np.ndarray, high: np.ndarray, low: np.nda
     """Return load − K (high + low), to twice the precision of a double.
 
     The terms of each row are split into parts whose sums are exact, so that their order does not matter (S. M. Rump,
-    T. Ogita and S. Oishi, SIAM J. Sci. Comput. 31 (2008) 189).
+    T. Ogita and S. Oishi, SIAM J. Sci. Comput. 31 (2008) 189). Few rows at a time need little memory.
     """
+    rows = max(1, _ELEMENTS * len(load) // matrix.nnz)
+    parts = (slice(begin, begin + rows) for begin in range(0, len(load), rows))
+    # Bits by which a sum of the five terms of each element may be longer than a term.
+    extra = int(np.ceil(np.log2(5 * np.diff(matrix.indptr).max()))) + 1
+    return np.concatenate([_residual_of_rows(matrix[part], load[part], high, low, extra) for part in parts])
+
+
+def _residual_of_rows(matrix: csr_array, load: np.ndarray, high: np.ndarray, low: np.ndarray, extra: int) -> np.ndarray:
     start, count = matrix.indptr[:-1], np.diff(matrix.indptr)
     first = np.zeros(matrix.nnz)
     first[start] = load
     products = (*_product(-matrix.data, high[matrix.indices]), *_product(-matrix.data, low[matrix.indices]))
     terms = np.stack([first, *products])
-    extra = int(np.ceil(np.log2(len(terms) * count.max()))) + 1
     total = np.zeros(len(load))
     for _ in range(3):
         largest = np.maximum.reduceat(np.abs(terms), start, axis=1).max(axis=0)

@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.motion.kind import CHAOS, MotionKind, chaotic_kind, periodic_orbit_kind, synchronization_distance
+from burridge_knopoff.motion.evidence import CHANGE
+from burridge_knopoff.motion.kind import CHAOS, MotionKind, chaotic_kind, regular_kind, synchronization_distance
 from burridge_knopoff.motion.observables import SteadyMotion, observe, run_options
 from burridge_knopoff.motion.phase_locking import locked_orbit
 from burridge_knopoff.motion.section_returns import Returns
@@ -155,11 +156,13 @@ class Classifier:
         return replace(motion, kind=self._chaos_kind(motion) if chaotic else motion.kind, exponent=exponent)
 
     def _mark_if_left(self, motion: SteadyMotion, usual: SteadyMotion, last: ChainState) -> SteadyMotion:
-        """Return the motion, marked as a transient if ⟨J⟩ after its last state differs."""
+        """Return the motion, marked as a transient if ⟨J⟩ or the amplitude after its last state differs."""
         if motion.kind in CHAOS:
             return motion
         later = self._observe(last, self.window)
-        return replace(usual, left_for=last) if later is not None and self._has_other_mean(motion, later) else motion
+        if later is None or not (self._has_other_mean(motion, later) or self._has_other_amplitude(motion, later)):
+            return motion
+        return replace(usual, left_for=last)
 
     def _known_distance(self, usual: SteadyMotion) -> float | None:
         """Return ⟨J⟩ if it is certain to exceed the threshold of synchrony in the longer window too, otherwise None."""
@@ -180,11 +183,18 @@ class Classifier:
         allowed = self._scaled_settings.standard_errors * error + MEAN_TOLERANCE * self.model.scale
         return abs(one.mean_distance - other.mean_distance) > allowed
 
+    def _has_other_amplitude(self, one: SteadyMotion, other: SteadyMotion) -> bool:
+        """Return whether the amplitudes of two motions at the same section differ, as ⟨J⟩ does not in synchrony."""
+        if (one.section, one.block) != (other.section, other.block):
+            return False
+        first, second = one.amplitude(self.model.v), other.amplitude(self.model.v)
+        return abs(first - second) > CHANGE * max(first, second)
+
     def _motion_on_orbit(self, motion: SteadyMotion, orbit: PeriodicOrbit) -> SteadyMotion:
         """Return a motion that is locked to a periodic orbit with kind, period and exponents of this orbit."""
         mean = synchronization_distance(motion.mean_distance, self.model.chain.is_mirror_symmetric)
         rate = np.log(np.abs(multipliers(orbit).whole[0])) / orbit.period
-        kind = periodic_orbit_kind(mean, orbit.period, self._scaled_settings)
+        kind = regular_kind(mean, orbit.period, self._scaled_settings)
         return replace(motion, kind=kind, period=orbit.period, exponent=np.array([0.0, rate, *motion.exponent[2:]]))
 
     def _chaos_kind(self, motion: SteadyMotion) -> MotionKind:

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.motion.period import Repetition, repetition_of
+from burridge_knopoff.motion.evidence import DIVERGENCE, Evidence, evidence_of
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.status import Status
 
@@ -21,10 +21,12 @@ from burridge_knopoff.running.status import Status
 class MotionKind(IntEnum):
     """Kinds of motion, numbered as in netCDF files.
 
-    PERIODIC motion repeats within `MotionSettings.longest_period`. Other regular motion is QUASIPERIODIC, even if it is
-    locked with a longer period. In SYNCHRONIZED motion, which is periodic, and in SYNCHRONIZED_CHAOS the end blocks
-    move together. TRANSIENT_CHAOS describes sets, not runs: chaos that an ensemble shows to end, or does not show to
-    last. SLIDING is uniform sliding.
+    In SYNCHRONIZED motion, which is regular, and in SYNCHRONIZED_CHAOS the end blocks move together: ⟨J⟩ alone tells,
+    whether the motion repeats or lies on a torus. Other regular motion is PERIODIC if it repeats within
+    `MotionSettings.longest_period`, and QUASIPERIODIC otherwise, even if it is locked with a longer period.
+    TRANSIENT_CHAOS describes sets, not runs: chaos that an ensemble shows to end, or does not show to last. A run is
+    CHAOTIC as long as its chaos lasts. SLIDING is uniform sliding. Motion that still changes in its window is
+    UNDETERMINED.
 
     >>> from burridge_knopoff import MotionKind
     >>> MotionKind(4).words, MotionKind.CHAOTIC.value
@@ -58,7 +60,7 @@ CHAOS = (MotionKind.CHAOTIC, MotionKind.SYNCHRONIZED_CHAOS)
 #: Motion in which the end blocks are synchronized.
 SYNCHRONOUS = (MotionKind.SYNCHRONIZED, MotionKind.SYNCHRONIZED_CHAOS)
 
-#: Kinds assigned to motion that may be a periodic orbit whose repetition was not observed.
+#: Kinds assigned to motion without synchrony that may be a periodic orbit whose repetition was not observed.
 UNDECIDED_KINDS = (MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED)
 
 
@@ -74,14 +76,6 @@ def merge_chaos(kind: np.ndarray) -> np.ndarray:
 
 # Largest error of an exponent, in units of `chaotic_exponent`, for which exponents can decide the kind.
 LARGEST_ERROR = 3.0
-
-# Factor by which the distance between successive cycles grows if a run leaves an unstable orbit.
-DIVERGENCE = 2.0
-
-# Relative difference of the largest W' at section points between the halves of a run without stops above which the run
-# still spirals towards uniform sliding, a cycle or a torus, or away from it. Settled tori differed by at most 2e-3 in a
-# window of 1000; in one of 7000 an amplitude that changes at a rate of 3e-6 differs by more.
-AMPLITUDE_CHANGE = 0.01
 
 
 def is_zero_exponent(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> np.ndarray:
@@ -101,8 +95,8 @@ def synchronization_distance(mean_distance: float, symmetric: bool) -> float:
     return mean_distance if symmetric else math.inf
 
 
-def periodic_orbit_kind(mean_distance: float, period: float, settings: MotionSettings) -> MotionKind:
-    """Return the kind of a periodic orbit with this ⟨J⟩ and period, which is infinite if it is longer than the run."""
+def regular_kind(mean_distance: float, period: float, settings: MotionSettings) -> MotionKind:
+    """Return the kind of regular motion with this ⟨J⟩ and period; NaN or infinite if it has not repeated."""
     if mean_distance < settings.synchronization_threshold:
         return MotionKind.SYNCHRONIZED
     return MotionKind.PERIODIC if period <= settings.longest_period else MotionKind.QUASIPERIODIC
@@ -120,7 +114,8 @@ class Motion:
 
     section_period : number of upward section points after which the state repeats, 0 if it does not
     period : time after which the state repeats, even if it is longer than `longest_period`; NaN if the state does not
-        repeat; infinite if the exponents are those of an attracting periodic orbit but the state has not repeated
+        repeat, or if nothing recorded tells it from its mirror image; infinite if the exponents are those of an
+        attracting periodic orbit but the state has not repeated
     unstable : whether the motion has stayed on an unstable periodic orbit
     """
 
@@ -131,15 +126,15 @@ class Motion:
 
     @property
     def can_be_periodic(self) -> bool:
-        """Whether the motion may be periodic although no repetition was observed."""
-        return self.kind in UNDECIDED_KINDS and not math.isfinite(self.period)
+        """Whether the motion may be periodic, or weakly chaotic, although no repetition was observed."""
+        return self.kind in (*UNDECIDED_KINDS, MotionKind.SYNCHRONIZED) and not math.isfinite(self.period)
 
 
 def motion_of_completed_run(run: Mapping[str, Any], mean_distance: float, settings: MotionSettings) -> Motion:
     """Return the kind of motion of a completed run.
 
     run : its exponents in descending order with their standard errors, which may be NaN or empty, and the arrays named
-        in `period.SECTION`
+        in `evidence.RECORD`
     mean_distance : ⟨J⟩; the end blocks are synchronized if it is below the synchronization threshold
 
     The rules, in this order:
@@ -148,44 +143,39 @@ def motion_of_completed_run(run: Mapping[str, Any], mean_distance: float, settin
       that repels all other states (`unstable`), and chaos may have ended within the window. If successive cycles
       diverge, the run is leaving such an orbit: it is undetermined unless an exponent shows chaos. Cycles diverge if
       their distance has grown by the factor DIVERGENCE, or at all if the largest exponent is above `zero_exponent`.
-    - Motion is chaotic if the largest exponent is above `chaotic_exponent` and above its error.
+    - Motion is chaotic if the largest exponent is above `chaotic_exponent` and above its error, unless its section
+      points repeat in the last part of the window: then the chaos has just ended.
     - Otherwise the largest exponent must be 0, that of the flow, and at most `zero_exponent`. The motion is then
-      periodic if the next exponent is negative, and quasiperiodic if the next exponent is 0 as well and the errors are
-      small. If the end blocks are synchronized, which is rare on a torus, the next exponent must be 0 within one
-      standard error.
-    - Periodic motion is synchronized, or periodic up to the longest period and quasiperiodic beyond.
+      regular: periodic if the next exponent is negative, and quasiperiodic if the next exponent is 0 as well and the
+      errors are small.
+    - Regular motion is synchronized if ⟨J⟩ says so. Otherwise it is periodic up to the longest period and quasiperiodic
+      beyond.
     - A largest exponent that is certain to be negative is that of uniform sliding, the only equilibrium, whose section
       points are rounding.
-    - All other motion is undetermined. This includes a largest exponent above `zero_exponent` but within its error, and
-      motion without repetition of a single block, or without stops and with an amplitude that still changes, as near a
-      Hopf bifurcation of uniform sliding: neither is a torus.
+    - All other motion is undetermined. This includes a largest exponent above `zero_exponent` but within its error,
+      motion without repetition of a single block, and regular motion that still changes: ⟨J⟩ approaches 0 or another
+      value, the distance of the end blocks grows from synchrony, or, without stops, the amplitude changes, as near a
+      Hopf bifurcation of uniform sliding.
     """
-    exponents = run["lyapunov_exponent"], run["lyapunov_error"]
-    motion = motion_of_repetition(repetition_of(run, settings), mean_distance, *exponents, settings)
-    stops, blocks = len(run["event_time"]) > 0, np.shape(run["event_position"])[1]
-    # A run that stops within its window has not reached uniform sliding.
-    excluded = motion.kind == MotionKind.SLIDING and stops
-    if motion.kind == MotionKind.QUASIPERIODIC and not math.isfinite(motion.period):
-        excluded |= blocks == 1 or (not stops and _changes_amplitude(run, settings))
-    return Motion(MotionKind.UNDETERMINED) if excluded else motion
+    evidence = evidence_of(run, mean_distance, settings)
+    return motion_of_evidence(evidence, mean_distance, run["lyapunov_exponent"], run["lyapunov_error"], settings)
 
 
-def _changes_amplitude(run: Mapping[str, np.ndarray], settings: MotionSettings) -> bool:
-    """Return whether the largest W' at upward section points differs between the halves of a run."""
-    velocity = run["crossing_velocity"][run["crossing_direction"] > 0]
-    first, second = (float(half.max(initial=0.0)) for half in np.array_split(velocity, 2))
-    return abs(first - second) > max(AMPLITUDE_CHANGE * max(first, second), settings.period_tolerance)
-
-
-def motion_of_repetition(
-    repetition: Repetition, mean_distance: float, exponent: np.ndarray, error: np.ndarray, settings: MotionSettings
+def motion_of_evidence(
+    evidence: Evidence, mean_distance: float, exponent: np.ndarray, error: np.ndarray, settings: MotionSettings
 ) -> Motion:
-    """Return the kind of motion of a completed run from the repetition of its state; see `motion_of_completed_run`."""
+    """Return the kind of motion of a completed run from its evidence; see `motion_of_completed_run`."""
+    repetition = evidence.repetition
     is_zero = not len(exponent) or not exponent[0] > settings.zero_exponent
-    if repetition.divergence <= (DIVERGENCE if is_zero else 1.0):
-        return motion_from_period(repetition.points, repetition.period, mean_distance, exponent, error, settings)
-    motion = motion_from_period(0, math.nan, mean_distance, exponent, error, settings)
-    return motion if motion.kind in (*CHAOS, MotionKind.SLIDING) else Motion(MotionKind.UNDETERMINED)
+    leaves = not repetition.divergence <= (DIVERGENCE if is_zero else 1.0)
+    points, period = (0, math.nan) if leaves else (repetition.points, repetition.period)
+    motion = motion_from_period(points, period, mean_distance, exponent, error, settings)
+    if motion.kind == MotionKind.SLIDING:
+        # A run that stops within its window has not reached uniform sliding.
+        excluded = evidence.stops
+    else:
+        excluded = evidence.settles if motion.kind in CHAOS else evidence.drifts or leaves
+    return Motion(MotionKind.UNDETERMINED) if excluded else motion
 
 
 def motion_from_period(
@@ -196,7 +186,7 @@ def motion_from_period(
     error: np.ndarray,
     settings: MotionSettings,
 ) -> Motion:
-    """Return the kind of motion that repeats after this many section points and this time.
+    """Return the kind of motion that repeats after this many section points and this time; see `Repetition`.
 
     The rules are those of `motion_of_completed_run`.
     """
@@ -204,35 +194,29 @@ def motion_from_period(
     if _is_at_rest(exponent, error, settings):
         return Motion(MotionKind.SLIDING)
     positive = _is_positive(exponent, error, settings)
+    if points and math.isnan(period):
+        return Motion(MotionKind.PERIODIC, unstable=positive)
     if points:
-        return Motion(periodic_orbit_kind(mean_distance, period, settings), points, period, positive)
+        return Motion(regular_kind(mean_distance, period, settings), points, period, positive)
     if positive:
         return Motion(chaotic_kind(mean_distance, settings))
     if not math.isfinite(period):
-        kind = _kind_by_exponents(mean_distance, exponent, error, settings)
-        if kind is not None:
-            return Motion(kind)
-        period = math.inf
-    return Motion(periodic_orbit_kind(mean_distance, period, settings), 0, period)
+        if not _is_regular(exponent, error, settings):
+            return Motion(MotionKind.UNDETERMINED)
+        # A second exponent below 0 is that of an attracting periodic orbit.
+        period = math.nan if is_zero_exponent(exponent, error, settings)[1] else math.inf
+    return Motion(regular_kind(mean_distance, period, settings), 0, period)
 
 
-def _kind_by_exponents(
-    mean_distance: float, exponent: np.ndarray, error: np.ndarray, settings: MotionSettings
-) -> MotionKind | None:
-    """Return the kind of motion that is not chaotic and has not repeated; None if it attracts as periodic orbits do."""
-    finite = np.flatnonzero(~np.isnan(exponent))
-    zero = is_zero_exponent(exponent, error, settings)
+def _is_regular(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> bool:
+    """Return whether exponents that do not show chaos are those of a periodic orbit or a torus."""
+    if np.count_nonzero(~np.isnan(exponent)) < 2:
+        return False
     # An exponent above its threshold may be 0 within its error, but then the error allows weak chaos as well.
-    if len(finite) and (not zero[0] or exponent[0] > settings.zero_exponent):
-        return MotionKind.UNDETERMINED
+    if not is_zero_exponent(exponent, error, settings)[0] or exponent[0] > settings.zero_exponent:
+        return False
     # Errors above the threshold of chaos leave the kind undetermined: chaos may have ended within the window.
-    if len(finite) and settings.standard_errors * np.nanmax(error[:2]) > LARGEST_ERROR * settings.chaotic_exponent:
-        return MotionKind.UNDETERMINED
-    if len(finite) > 1 and not zero[1]:
-        return None
-    if len(finite) > 1 and mean_distance < settings.synchronization_threshold and exponent[1] < -error[1]:
-        return MotionKind.UNDETERMINED
-    return MotionKind.QUASIPERIODIC if len(finite) > 1 else MotionKind.UNDETERMINED
+    return bool(settings.standard_errors * np.nanmax(error[:2]) <= LARGEST_ERROR * settings.chaotic_exponent)
 
 
 def _is_positive(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> bool:

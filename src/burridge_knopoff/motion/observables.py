@@ -14,7 +14,7 @@ from burridge_knopoff.motion.kind import (
     Motion,
     MotionKind,
     motion_of_completed_run,
-    periodic_orbit_kind,
+    regular_kind,
     synchronization_distance,
 )
 from burridge_knopoff.motion.period import REPETITIONS, orbit_length
@@ -110,6 +110,11 @@ class SteadyMotion:
         """Return the motion with other returns, and other returns of its mirror image."""
         return replace(self, returns=returns, mirror_returns=mirror_returns, spacing=spacing_of(returns))
 
+    def amplitude(self, v: float) -> float:
+        """Return the root mean square distance of the returns from uniform sliding at the driver velocity v."""
+        position, velocity = np.split(self.returns, 2, axis=1)
+        return float(np.sqrt(np.mean(position**2 + (velocity - v) ** 2)))
+
     def state(self) -> ChainState:
         """Return the state at the last return."""
         return state_of(self.returns[-1])
@@ -197,7 +202,7 @@ def _without_stops(motion: Motion, section: Returns, mean: float, settings: Moti
         return motion
     period = float(section.times[-1] - section.times[-1 - length])
     points = motion.section_period if math.isclose(motion.period, period, rel_tol=SAME_PERIOD) else 0
-    return Motion(periodic_orbit_kind(mean, period, settings), points, period)
+    return Motion(regular_kind(mean, period, settings), points, period)
 
 
 def sliding_motion(model: Model) -> SteadyMotion:

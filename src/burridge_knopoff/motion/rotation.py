@@ -46,9 +46,27 @@ def rotation_number(model: Model, start: ChainState, duration: float) -> tuple[f
     return whole, abs(first - second)
 
 
+def mean_rotation(returns: np.ndarray) -> float:
+    """Return the mean number of turns, at most ½, about the centre of a closed curve from one return to the next.
+
+    returns : successive states on the curve, shape (n, coordinates); turns are counted in the plane of its largest
+        extents, in which the curve has to surround its centre
+    """
+    around = returns - returns.mean(axis=0)
+    plane = around @ np.linalg.svd(around, full_matrices=False)[2][:2].T
+    angle = np.arctan2(plane[:, 1], plane[:, 0])
+    steps = np.angle(np.exp(1j * np.diff(angle)))
+    weight = _weights(len(steps))
+    return float(abs((steps * weight).sum() / weight.sum()) / (2.0 * math.pi))
+
+
 def _rate_ratio(phase_steps: np.ndarray) -> float:
     """Return the ratio of the mean rates of two phases from their changes in equal time steps, shape (2, n)."""
-    time = (np.arange(phase_steps.shape[1]) + 0.5) / phase_steps.shape[1]
-    weight = np.exp(-1.0 / (time * (1.0 - time)))
-    ends, middle = (phase_steps * weight).sum(axis=1)
+    ends, middle = (phase_steps * _weights(phase_steps.shape[1])).sum(axis=1)
     return float(ends / middle) if middle else math.nan
+
+
+def _weights(count: int) -> np.ndarray:
+    """Return the weights of a number of equal time steps, with which averages on a torus converge fastest."""
+    time = (np.arange(count) + 0.5) / count
+    return np.exp(-1.0 / (time * (1.0 - time)))

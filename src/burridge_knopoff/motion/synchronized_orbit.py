@@ -1,4 +1,6 @@
-"""The synchronized orbit of a chain that is its own mirror image: the orbit on which mirror blocks move identically.
+"""The synchronized orbit of a chain that is its own mirror image: mirror blocks move identically on it.
+
+It is the orbit on which the end blocks stop once in a period, if there is one. Other synchronized motion may coexist.
 
 A run from rest stays mirror-symmetric to the bit and settles on this orbit at moderate a, or on an orbit without stops
 at the a of the model. From there the orbit is continued, whether it is stable or not.
@@ -32,13 +34,15 @@ CYCLES = 8
 
 
 def synchronized_orbit(model: Model) -> PeriodicOrbit:
-    """Return the synchronized orbit of a model, whether it is stable or not.
+    """Return the synchronized orbit of a model on which the end blocks stop once in a period, stable or not.
 
     model : with any number of blocks; the chain must be its own mirror image
 
     Raises OrbitError, a ValueError, if it is not, or if no orbit is found.
 
-    docs/synchronization.md derives where the orbit of three blocks is stable.
+    Without such an orbit, the orbit is that on which a run from rest settles. If not `attracts_within_synchrony` of its
+    `multipliers`, synchronized motion of another period may attract: `transverse_exponent` says whether that from a
+    state does. docs/synchronization.md derives where the orbit of three blocks is stable.
 
     >>> from burridge_knopoff import Chain, Model, law_of, multipliers, synchronized_orbit
     >>> model = Model(Chain(3), law_of("linearized", 0.08))

@@ -63,6 +63,15 @@ class Multipliers:
         return complex(self.symmetry_breaking[0]) if len(self.symmetry_breaking) else complex(np.nan)
 
     @property
+    def attracts_within_synchrony(self) -> bool:
+        """Whether mirror-symmetric perturbations of a synchronized orbit decay; False for other orbits.
+
+        If they grow, nearby synchronized motion leaves the orbit, and `transverse` does not decide whether synchrony
+        attracts: synchronized motion of another period may.
+        """
+        return len(self.symmetry_breaking) > 0 and bool((np.abs(self.symmetry_preserving) < 1.0).all())
+
+    @property
     def unstable_count(self) -> int:
         """Number of multipliers outside the unit circle."""
         return int((np.abs(np.concatenate([self.symmetry_preserving, self.symmetry_breaking])) > 1.0).sum())

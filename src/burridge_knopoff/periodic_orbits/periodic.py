@@ -93,7 +93,7 @@ class PeriodicOrbit:
 
     def __repr__(self) -> str:
         return (
-            f"<PeriodicOrbit, {self.symmetry.name.lower()}, {self.model.law.name} law, {self.model.place}: "
+            f"<PeriodicOrbit, {self.symmetry.name.lower()}, {self.model.words}: "
             f"period {self.period:.9g}, stops of each block {self.stop_counts}>"
         )
 

@@ -1,4 +1,4 @@
-"""Bifurcations of the synchronized orbit: loss of stability at a_c, grazing of a block, and period doubling.
+"""Bifurcations of the synchronized orbit: a_c, where mirror synchrony breaks, grazing of a block, and period doubling.
 
 The bifurcations are located along the branch. The root in a of the function that vanishes at each of them, on orbits
 solved to rounding accuracy, then gives a to the last digits.
@@ -80,17 +80,19 @@ def _each_bifurcation(orbits: KnownOrbits) -> Iterator[Bifurcation]:
 
 
 def critical_a(bifurcations: list[Bifurcation]) -> float:
-    """Return a_c, at which the leading transverse multiplier reaches the unit circle; NaN if it does not."""
+    """Return a_c, at which the leading transverse multiplier reaches the unit circle; NaN if it does not.
+
+    Only where the orbit attracts within synchrony does its stability change there: if it does at some of these values,
+    a_c is the smallest of them, otherwise the smallest of all.
+    """
 
     def distance(orbit: PeriodicOrbit) -> float:
         return abs(multipliers(orbit).transverse) - 1.0
 
     kinds = BifurcationKind.PITCHFORK, BifurcationKind.PERIOD_DOUBLING, BifurcationKind.NEIMARK_SACKER
-    return _smallest_a(
-        bifurcations,
-        lambda bifurcation: bifurcation.kind in kinds and abs(distance(bifurcation.at.orbit)) < CRITICAL,
-        distance,
-    )
+    crossings = [item for item in bifurcations if item.kind in kinds and abs(distance(item.at.orbit)) < CRITICAL]
+    stable = [crossing for crossing in crossings if crossing.at.multipliers.attracts_within_synchrony]
+    return _smallest_a(stable or crossings, lambda _: True, distance)
 
 
 def symmetric_period_doubling_a(bifurcations: list[Bifurcation]) -> float:
@@ -176,12 +178,17 @@ def finite_difference_multiplier(orbit: PeriodicOrbit) -> complex:
     return complex(values[np.abs(values).argmax()])
 
 
-def critical_a_error(orbits: KnownOrbits, a: float) -> float:
-    """Return the change of a_c if finite differences replace the tangent map; NaN if a nearby orbit is not found."""
-    orbit, step = orbits.at(a), SLOPE_STEP * orbits.model.chain.a_unit
+def transverse_slope(orbits: KnownOrbits, a: float) -> float:
+    """Return the derivative of the modulus of the transverse multiplier by a; NaN if a nearby orbit is not found."""
+    step = SLOPE_STEP * orbits.model.chain.a_unit
     try:
         low, high = (abs(multipliers(orbits.at(a + side * step)).transverse) for side in (-1, 1))
     except OrbitError:
         return math.nan
-    slope = (high - low) / (2.0 * step)
+    return (high - low) / (2.0 * step)
+
+
+def critical_a_error(orbits: KnownOrbits, a: float) -> float:
+    """Return the change of a_c if finite differences replace the tangent map; NaN if a nearby orbit is not found."""
+    orbit, slope = orbits.at(a), transverse_slope(orbits, a)
     return abs((abs(finite_difference_multiplier(orbit)) - abs(multipliers(orbit).transverse)) / slope)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from burridge_knopoff.messages import escape_unprintable
+from burridge_knopoff.provenance.files import read_regular
 from burridge_knopoff.provenance.record import remake_command
 
 #: Reason why a file is bad.
@@ -30,8 +31,7 @@ def read_bytes(path: Path, size: int = -1) -> bytes:
     Raises BadFile if it is missing, empty, or cannot be read.
     """
     try:
-        with path.open("rb") as file:
-            content = file.read(size)
+        content = read_regular(path, size)
     except FileNotFoundError:
         raise BadFile(path, "is missing", "missing") from None
     except OSError as error:

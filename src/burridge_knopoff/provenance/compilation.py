@@ -13,6 +13,8 @@ COMPILER_FLAGS = (
     "-ffp-contract=off",
     "-fno-fast-math",
     "-fno-tree-vectorize",
+    # Python's own flags contain the opposite, which keeps loops from being simplified.
+    "-fno-wrapv",
     "-fvisibility=hidden",
 )
 

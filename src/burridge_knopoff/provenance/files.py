@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import atexit
 import contextlib
+import errno
 import fcntl
 import glob
 import os
@@ -79,6 +80,29 @@ def _reason(error: OSError | RuntimeError, temporary: Path) -> object:
     return f"{error} (the disk is not full; memory may be)"
 
 
+def read_regular(path: str | Path, size: int = -1) -> bytes:
+    """Return the first `size` bytes of a file, by default all.
+
+    Raises OSError if it cannot be read, or is not a regular file: whoever reads a named pipe waits for its writer.
+    """
+    number = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
+    with contextlib.ExitStack() as stack:
+        stack.callback(os.close, number)
+        # By the opened file: another may stand in its place by now.
+        check_regular(number)
+        with open(number, "rb", closefd=False) as file:
+            return file.read(size)
+
+
+def check_regular(path: str | Path | int) -> None:
+    """Raise OSError, which does not name it, if a folder, a named pipe or the like is in place of a file.
+
+    path : of a file, or its number if it is open
+    """
+    if os.path.exists(path) and not os.path.isfile(path):
+        raise OSError(errno.EINVAL, f"it is {'a folder' if os.path.isdir(path) else 'not a regular file'}")
+
+
 def write_text(path: str | Path, text: str) -> None:
     """Write a text file, completely or not at all."""
     write_whole(path, lambda name: Path(name).write_bytes(text.encode()))
@@ -123,11 +147,10 @@ def check_target(path: str | Path) -> None:
     """Raise OSError, one line, if a file of that name could not be written, before hours of work are lost."""
     path = Path(os.path.realpath(Path(path).parent), Path(path).name)
     try:
-        if path.exists() and not path.is_file():
-            raise OSError(f"it is {'a folder' if path.is_dir() else 'not a regular file'}")
+        check_regular(path)
         check_folder(path.parent)
     except OSError as error:
-        raise OSError(f"{path}: cannot be written: {error}") from None
+        raise OSError(f"{path}: cannot be written: {error.strerror or error}") from None
 
 
 def remove_links(*paths: str | Path) -> None:

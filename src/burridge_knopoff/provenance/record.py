@@ -14,10 +14,14 @@ from pathlib import Path
 from typing import Any
 
 from burridge_knopoff.messages import command, escape_unprintable
-from burridge_knopoff.provenance.files import display_path, write_text
+from burridge_knopoff.provenance.files import display_path, read_regular, write_text
 from burridge_knopoff.provenance.sources import PACKAGE, SOFTWARE
 
 NAME = "study.json"
+#: The checkout of the package, and files in it, which an installed package lacks.
+CHECKOUT, SNAKEFILE, PROFILE = PACKAGE.parents[1], "Snakefile", "profiles/default"
+#: Stands in a command for the Snakefile of another workflow: only who names it runs its code.
+OTHER_SNAKEFILE = "SNAKEFILE"
 
 #: {key of a record: its type}
 _TYPES = {
@@ -77,9 +81,11 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
     """
     path = Path(results, NAME)
     try:
-        record = json.loads(path.read_text(encoding="utf-8"))
-    except OSError:
+        record = json.loads(read_regular(path))
+    except OSError as error:
         folder = escape_unprintable(str(results))
+        if path.exists():
+            raise ValueError(f"{folder}: {NAME} cannot be read: {error.strerror}") from None
         reason = f"not the results of a study: no {NAME} in it, which `snakemake` writes"
         raise ValueError(f"{folder}: {reason if Path(results).exists() else 'this folder does not exist'}") from None
     except (ValueError, RecursionError):
@@ -147,21 +153,54 @@ def check_owner(results: str | Path, config_file: str | Path, given: dict[str, A
     )
 
 
-def remake_command(study_file: str | Path, *paths: str | Path, listed: Sequence[str] = ()) -> str:
+def imports_study(record: Mapping[str, Any], root: Path) -> bool:
+    """Return whether another workflow imports a recorded study, whose Snakefile is on record as its config file.
+
+    root : the folder from which `snakemake` was called
+    """
+    words: list[str] = record["arguments"]
+    option, snakefile, *_ = [*words, "", ""]
+    return option == "-s" and (root / snakefile).resolve() == (root / record["config_file"]).resolve()
+
+
+def checkout_words(words: Sequence[str], root: Path) -> list[str]:
+    """Return recorded words with the Snakefile and the profile of this checkout.
+
+    Results may come from others: neither a Snakefile that they name nor a profile beside them is to run.
+
+    root : the folder in which `snakemake` is called
+    """
+    option, recorded, *others = [*words, "", ""]
+    is_named = option == "-s"
+    others = [word for word in (others if is_named else words) if word]
+    if root.resolve() == CHECKOUT and not is_named:
+        return others
+    snakefile, profile = (Path(os.path.relpath(CHECKOUT / name, root.resolve())) for name in (SNAKEFILE, PROFILE))
+    snakefiles = (CHECKOUT / SNAKEFILE, CHECKOUT / "workflow" / SNAKEFILE)
+    is_own = snakefiles[0].is_file() and (not is_named or (root / recorded).resolve() in snakefiles)
+    own_words = ["-s", str(snakefile), "--workflow-profile", str(profile)]
+    return [*(own_words if is_own else ["-s", OTHER_SNAKEFILE, "--workflow-profile", "none"]), *others]
+
+
+def remake_command(
+    study_file: str | Path, *paths: str | Path, listed: Sequence[str] = (), is_own_run: bool = False
+) -> str:
     """Return the command that recreates files and everything that depends on them, from any folder.
 
     study_file : a file in the results of their study
     paths : the files, if other than that one
     listed : if there are too many paths, the words of a command that prints them relative to the folder where
         `snakemake` runs
+    is_own_run : whether this process runs the study, by its recorded words; else see `checkout_words`
     """
-    place, arguments, named = "", list[str](), [str(path) for path in paths or [study_file]]
+    place, words, named = "", list[str](), [str(path) for path in paths or [study_file]]
     if folder := study_folder(study_file):
         # Snakemake identifies files by their paths from the folder where it was called for results/<study>.
         root = folder.parents[1]
         named = [os.path.relpath(name, root) for name in named]
         place = "" if root.resolve() == Path.cwd() else f"{command('cd', root)} && "
         with contextlib.suppress(ValueError):
-            arguments = read_study_record(folder)["arguments"]
-    start = place + command("snakemake", "-c2", *arguments, "-R")
+            recorded = read_study_record(folder)["arguments"]
+            words = recorded if is_own_run else checkout_words(recorded, root)
+    start = place + command("snakemake", "-c2", *words, "-R")
     return f"{start} {f'$({command(*listed)})' if listed else command(*named)}"

@@ -28,8 +28,6 @@ PLUMBING = (
     "job.py",
     "kernel/__init__.py",
     "messages.py",
-    "model/fields.py",
-    "model/ranges.py",
     "provenance/",
     "running/command.py",
     "version.py",

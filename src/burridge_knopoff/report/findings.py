@@ -129,7 +129,12 @@ FINDINGS = {
         "The difference from the formula is 0, up to rounding.",
     ),
     "equilibrium_unstable": Finding("The largest real part is {} or more.", "smallest of the largest real parts"),
-    "growth": Finding("Perturbations grow at no more than {} times −F'(v).", "largest growth rate over −F'(v)", max),
+    "oscillations_grow": Finding(
+        "Perturbations grow at {} times −F'(v) or faster.", "smallest growth rate over −F'(v)"
+    ),
+    "growth_rate": Finding(
+        "Perturbations grow at no more than {} times −F'(v).", "largest growth rate over −F'(v)", max
+    ),
     "velocities_near_driver": Finding("The largest is {} times v.", "largest initial velocity over v", max),
     "minus_near_equilibrium": Finding("In minus it begins {} from there.", "|U₁(0) − U₁ᵉ|, minus"),
     "friction_keeps_sign": Finding("The smallest friction on a slipping block is {}.", "smallest Φ"),
@@ -156,12 +161,10 @@ FINDINGS = {
         "The laws differ by no more than {} % of the static friction.", "largest difference of the laws", max
     ),
     "springs_and_masses_help": Finding(
-        "At a fixed v the difference of the laws falls as a^{}.", "power of a with which the difference", max
+        "The difference of ⟨J⟩ between the laws falls as a^{} or faster.", "power of a with which the difference of ⟨J⟩"
     ),
     "low_friction_helps": Finding(
-        "If friction depends less on the velocity, the difference of the laws falls as a^{}.",
-        "power of a with which the difference",
-        max,
+        "The difference of ⟨J⟩ between the laws falls as a^{} or faster.", "power of a with which the difference of ⟨J⟩"
     ),
     "two_blocks_agree": Finding(
         "The laws agree in the kind of motion and in ⟨J⟩ at {} % of these values of a.",

@@ -151,6 +151,7 @@ def _content_over_a(
         ),
         "proved": "proof" in summaries,
         "transitions": tables.transition_table(summaries["orbits"]),
+        "synchrony": _summary_content(summaries, "bifurcations", tables.synchrony_table),
         "maps": _summary_content(summaries, "basins", tables.map_table, []),
         "agreement": digest(summaries["agreement"]).splitlines(),
         "chains": _summary_content(summaries, "chains", tables.chain_table, []),

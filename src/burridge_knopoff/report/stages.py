@@ -8,6 +8,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from burridge_knopoff.provenance.files import read_regular
+
 #: The job that writes the report has not ended when the report is written.
 SKIPPED = ("report",)
 
@@ -23,8 +25,8 @@ class Stage:
     """The measured jobs of one stage.
 
     wall, cpu : sums over the jobs, in seconds; cpu_jobs : number of jobs with a known CPU time
-    memory : largest memory of a job, in MB; memory that its processes share counts once if the system reports it, and
-        otherwise for each process; 0 if it was not measured
+    memory : largest memory of a job, in MB, at least that of its largest process; 0 if it was not measured. What its
+        processes share counts once if the system reports it, and otherwise for each process
     """
 
     name: str
@@ -56,8 +58,8 @@ def read_stages(folder: str | Path) -> list[Stage]:
 
 def job_costs(path: Path) -> Iterator[tuple[float, float, float]]:
     """Yield wall time and CPU time in seconds and memory in MB of the jobs in a file, except unreadable lines."""
-    with suppress(OSError, ValueError, KeyError, csv.Error), path.open(encoding="utf-8") as file:
-        for row in csv.DictReader(file, delimiter="\t", restval=""):
+    with suppress(OSError, ValueError, KeyError, csv.Error):
+        for row in csv.DictReader(read_regular(path).decode().splitlines(), delimiter="\t", restval=""):
             # A job that ends before it is first measured has NA or -.
             rest = (row.get(key, "") for key in ("cpu_time", "max_pss", "max_rss"))
             cpu, shared_once, resident = (float(text) if text[:1].isdigit() else 0.0 for text in rest)

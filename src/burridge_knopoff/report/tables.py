@@ -5,14 +5,26 @@ from __future__ import annotations
 from enum import IntEnum
 from typing import Any
 
+import numpy as np
 import xarray
 
+from burridge_knopoff.continuation.branch_changes import Change
+from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.report.numbers import format_measured
 from burridge_knopoff.study.formatting import span, text
+from burridge_knopoff.summaries.bifurcations import CHANGE, change_text
 from burridge_knopoff.summaries.branch_rows import branch_rows
 from burridge_knopoff.summaries.map_rows import map_rows
-from burridge_knopoff.summaries.orbit_flags import BifurcationSide, OrbitStatus
+from burridge_knopoff.summaries.orbit_flags import BifurcationSide, CriticalStability, OrbitStatus
+
+#: The stability of the synchronized orbit at a_c, in words.
+STABILITY = {
+    CriticalStability.UNDETERMINED: "–",
+    CriticalStability.UNSTABLE: "unstable on both sides: synchrony does not end there",
+    CriticalStability.LOST: "lost",
+    CriticalStability.GAINED: "gained",
+}
 
 
 def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
@@ -33,7 +45,7 @@ def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
 
 def transition_table(orbits: xarray.Dataset) -> dict[str, Any]:
     """Return the transitions of the synchronized orbit, a row each and a column for each law; {} without an orbit."""
-    if not (orbits["status"].values == OrbitStatus.FOUND).any():
+    if not (orbits["status"] == OrbitStatus.FOUND).any() and not orbits["critical_a"].notnull().any():
         return {}
     laws = [str(law) for law in orbits["law"].values]
 
@@ -46,10 +58,12 @@ def transition_table(orbits: xarray.Dataset) -> dict[str, Any]:
 
     kinds = [_meaning(BifurcationKind(orbits.sel(law=law)["bifurcation_kind"].item())) for law in laws]
     sides = [_meaning(BifurcationSide(orbits.sel(law=law)["bifurcation_side"].item())) for law in laws]
+    stability = [STABILITY[CriticalStability(orbits["critical_stability"].sel(law=law).item())] for law in laws]
     return {
         "laws": laws,
         "rows": [
             row("a_c, at which |μ| reaches 1", "critical_a", "critical_a_error"),
+            {"name": "stability of the orbit at a_c, as a grows", "cells": stability},
             {
                 "name": "bifurcation at a_c",
                 "cells": [f"{side} {kind}" for side, kind in zip(sides, kinds, strict=True)],
@@ -61,6 +75,26 @@ def transition_table(orbits: xarray.Dataset) -> dict[str, Any]:
             row("largest difference of |x_1 − x_3| between rising and falling a", "hysteresis"),
         ],
     }
+
+
+def synchrony_table(bifurcations: xarray.Dataset) -> list[dict[str, str]]:
+    """Return a row for each bifurcation at which a branch of synchronized attractors begins, ends or changes."""
+    before, after = (bifurcations[f"motion_{side}"] == MotionKind.SYNCHRONIZED for side in ("before", "after"))
+    change = bifurcations["change"]
+    # At a beginning the motion before, and at an end the motion after, is that of another branch.
+    left, entered = (change.isin([end, Change.CHANGE]) for end in (Change.END, Change.BEGINNING))
+    mask = (before & left) | (after & entered)
+    parts = (bifurcations.isel(bifurcation=k) for k in np.flatnonzero(mask.values))
+    return [
+        {
+            "law": str(part["law"].item()),
+            "a": format_measured(part["a"].item(), part["a_error"].item()),
+            "kind": BifurcationKind(part["kind"].item()).words,
+            "change": change_text({str(name): value.item() for name, value in part[[*CHANGE]].data_vars.items()}),
+            "period": format_measured(part["period"].item()),
+        }
+        for part in parts
+    ]
 
 
 def _meaning(item: IntEnum) -> str:

@@ -22,13 +22,13 @@ MAIN = ("history_decides", "laws_agree", "chaotic_above")
 #: What each verdict means, for a reader of the page.
 MEANINGS = {
     HOLDS: "true at every value of a that the statement is about; a number, within its tolerance",
-    LOOSELY: "true at nine or more in ten of these values; a number, within twice its tolerance; otherwise in the "
-    "weaker sense that the reason gives",
+    LOOSELY: "true at nine or more in ten of these values; a number, within its looser tolerance; otherwise in the "
+    "weaker sense that its rule gives",
     CONVENTION: "true under one convention, false under another; a convention is a choice of contact and start, of "
     "which the paper leaves the start open",
     READING: "true if the wording is taken one way, false if taken another; each way is a reading",
-    FAILS: "false: fewer than nine in ten, or farther than twice the tolerance",
-    UNDECIDED: "too close to call: the study has data, but too few to decide",
+    FAILS: "false: at fewer than nine in ten of these values, by two values or more, or farther than the tolerances",
+    UNDECIDED: "too close to call: one value of a more would make it nine in ten, or unknown values would decide",
     NOT_TESTABLE: "the study did not compute all that the verdict depends on",
 }
 

@@ -9,8 +9,9 @@ from burridge_knopoff.running.settings import Settings
 # Measured (benchmarks/chains.py): events per block and time unit; CPU seconds per event and block of its group,
 # without perturbations and for each perturbation; memory per block; CPU seconds per step of rk4 and block.
 EVENTS, SECONDS, SECONDS_OF_PERTURBATION, BYTES, SECONDS_OF_STEP = 0.2, 1.5e-7, 1e-7, 4500.0, 6.5e-8
-#: In a dense network: CPU seconds per event and block, and in addition for each block that slips; memory per spring.
-SECONDS_OF_DENSE, SECONDS_OF_PULL, BYTES_OF_SPRING = 2.5e-7, 1e-8, 600.0
+#: In a dense network: CPU seconds per event and block, and in addition for each spring of a block that slips; memory
+#: per spring.
+SECONDS_OF_DENSE, SECONDS_OF_PULL, BYTES_OF_SPRING = 2.5e-7, 1e-8, 250.0
 #: Mean number of neighbours from which on the springs of a network decide what it costs.
 DENSE = 8.0
 #: Expansions per time unit and unit of the highest rate of a chain, each as expensive as an event: 0.1 to 0.6 in chains
@@ -31,8 +32,9 @@ def cost_of(model: Model, begun: ChainState, settings: Settings) -> tuple[float,
     memory = BYTES * model.blocks
     if is_dense(model.chain):
         entries = len(model.chain.neighbours.index)
-        # Forces change on all blocks of the network, or on the neighbours of a block and theirs.
-        event += min(model.blocks, (entries / model.blocks) ** 2) * (SECONDS_OF_DENSE + together * SECONDS_OF_PULL)
+        degree = entries / model.blocks
+        # A group is the whole network, or the neighbours of a block and theirs.
+        event += min(model.blocks, degree**2) * SECONDS_OF_DENSE + together * degree * SECONDS_OF_PULL
         memory += BYTES_OF_SPRING * 0.5 * entries
     return max(EVENTS * model.blocks, _expansions(model.chain)) * event, memory
 

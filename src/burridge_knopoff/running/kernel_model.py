@@ -45,7 +45,7 @@ def kernel_model(model: Model, loading: str = "steady") -> KernelModel:
         slope=law.tape.slope,
         linear=law.is_linear,
         rate=-law.initial_slope,
-        steepest=_steepest_slope(law, *chain.weakening_range),
+        steepest_at_rest=_is_steepest_at_rest(law, *chain.weakening_range),
         v=v,
         symmetric=model.contact == "symmetric",
         creep_speed=creep_speed(model, loading),
@@ -54,9 +54,9 @@ def kernel_model(model: Model, loading: str = "steady") -> KernelModel:
 
 
 @lru_cache(maxsize=256)
-def _steepest_slope(law: Law, least: float, largest: float) -> float:
-    """Return the largest modulus of the slope of a law between these factors of the largest speed."""
-    return law.steepest_slope(MAX_SPEED * least, MAX_SPEED * largest)
+def _is_steepest_at_rest(law: Law, least: float, largest: float) -> bool:
+    """Return whether no slope of a law between these factors of the largest speed is steeper than that at rest."""
+    return law.is_linear or law.steepest_slope(MAX_SPEED * least, MAX_SPEED * largest) <= abs(law.initial_slope)
 
 
 def creep_speed(model: Model, loading: str) -> float:

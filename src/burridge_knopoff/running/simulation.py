@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from burridge_knopoff.kernel._core import Exponents
-from burridge_knopoff.model.initial import CONTINUED, ContinuedState, InitialState
+from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.runner import Runner, check_state, new_observer
 from burridge_knopoff.running.settings import Settings
@@ -44,14 +44,14 @@ class PreparedRun:
     """A run that has not started. runner : its solver, in the state `begun`"""
 
     model: Model
-    initial: InitialState
+    given: InitialState | ChainState
     settings: Settings
     runner: Runner
     begun: ChainState
 
     def result(self, status: Status) -> Trajectory:
         """Return the trajectory after the run has ended with a status."""
-        return collect(self.model, self.initial, self.settings, self.runner, self.begun, status)
+        return collect(self.model, self.given, self.settings, self.runner, self.begun, status)
 
 
 def prepare(
@@ -67,8 +67,7 @@ def prepare(
     settings.check_chain(model.chain)
     if isinstance(initial, ChainState):
         check_state(model, initial)
-        begun, position = initial, initial.position + model.sliding_offset
-        initial = ContinuedState(CONTINUED, tuple(position.tolist()), tuple(begun.velocity.tolist()))
+        begun = initial
     else:
         begun = model.begin(initial, settings.start)
     runner = _runner(model, settings, begun.time, section_only, stops_only)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.initial import CONTINUED, InitialState, StartedState
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.derivative import missing_derivative
 from burridge_knopoff.running.runner import Runner
@@ -25,9 +25,9 @@ class Trajectory:
     two runs together have the events and crossings of one long run, bit for bit. `initially_slipping` is true for the
     blocks that slip at the beginning. A block has this slip, if it is true, and one slip from each of its starts.
 
-    Positions are U − vτ (relative to the driver) and velocities are U', as in the paper's figures. `initial` is the
-    state as it was given: `minus` and `plus` have the numbers of the paper, for v = 0.1, which
-    `Model.initial_coordinates` takes to another v.
+    Positions are U − vτ (relative to the driver) and velocities are U', as in the paper's figures. `given` is the
+    state as it was given, and `initial` that from which the run started: one number per block, those of `minus` and
+    `plus` at the v of the model, and velocities 0 of blocks that `start: tested` holds.
 
     Times are in units of 1/ω. Shapes: `initially_slipping` (blocks,); `settling_time` (levels,); `time`, `distance`
     (samples,); `event_time`, `event_block`, `event_kind` (events,), `event_position`, `event_velocity` (events,
@@ -44,6 +44,7 @@ class Trajectory:
     """
 
     model: Model
+    given: InitialState | ChainState = field(repr=False)
     initial: InitialState
     settings: Settings
     status: str
@@ -87,14 +88,19 @@ class Trajectory:
     def __repr__(self) -> str:
         ended = early_end(Status[self.status.upper()], self.end_time)
         return (
-            f"<Trajectory of {self.model.blocks} blocks from {self.initial.name}, {self.model.law.name} law, "
-            f"{self.model.place}: {ended or f'completed at tau = {self.end_time:g}'}, {self.event_count} events, "
+            f"<Trajectory of {self.model.blocks} blocks from {self.initial.name}, {self.model.words}: "
+            f"{ended or f'completed at tau = {self.end_time:g}'}, {self.event_count} events, "
             f"<J> = {self.mean_distance:.6g} +- {self.mean_distance_error:.1g}>"
         )
 
 
 def collect(
-    model: Model, initial: InitialState, settings: Settings, runner: Runner, begun: ChainState, status: Status
+    model: Model,
+    given: InitialState | ChainState,
+    settings: Settings,
+    runner: Runner,
+    begun: ChainState,
+    status: Status,
 ) -> Trajectory:
     """Return the trajectory of a run that started in the state `begun` and ended with a status."""
     measured = runner.observer.results()
@@ -119,7 +125,9 @@ def collect(
     least_force = [float(value) for value in (np.fmin(*force), force[1])]
     return Trajectory(
         model=model,
-        initial=initial,
+        # Without the solver that the state holds to continue exactly.
+        given=replace(given) if isinstance(given, ChainState) else given,
+        initial=_started(model, given, begun),
         settings=settings,
         status=status.name.lower(),
         begin_time=begun.time,
@@ -155,6 +163,16 @@ def collect(
         window_least_spring_force=least_force[1],
         **lyapunov,
     )
+
+
+def _started(model: Model, given: InitialState | ChainState, begun: ChainState) -> InitialState:
+    """Return the numbers of the state from which a run started: the given state, if it has them."""
+    if isinstance(given, ChainState):
+        position, velocity = given.position + model.sliding_offset, given.velocity
+        return StartedState(CONTINUED, tuple(position.tolist()), tuple(velocity.tolist()))
+    position, velocity = model.initial_coordinates(given)
+    numbers = tuple(position.tolist()), tuple(np.where(begun.stuck, 0.0, velocity).tolist())
+    return given if numbers == (given.position, given.velocity) else StartedState(given.name, *numbers)
 
 
 def _exponents(runner: Runner, settings: Settings, completed: bool) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray
 
+from burridge_knopoff.attractors.attractor import Lifetime
 from burridge_knopoff.attractors.lookup import branch_names, side_name
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.show.formatting import wrap_lines
@@ -33,10 +34,13 @@ def attractor_table(attractors: xarray.Dataset, columns: dict[str, list[str]], w
         )
         exponent = attractor["lyapunov_exponent"].values
         locked = kind == MotionKind.QUASIPERIODIC and np.isfinite(period)
+        depth = f", locked: period {period:.5g}" if locked else ""
+        if attractor["lifetime_ends"].item() >= 0:
+            depth = f", {Lifetime(attractor['lifetime_ends'].item(), attractor['lifetime_time'].item()).words}"
         rows.append(
             (
                 branch_label(attractors, attractor["branch"].item(), attractor["side"].item()),
-                f"{kind.words}{f' {points}' if points else f', locked: period {period:.5g}' if locked else ''}",
+                f"{kind.words}{f' {points}' if points else depth}",
                 to_ascii(with_error(attractor["mean_distance"].item(), attractor["mean_distance_error"].item())),
                 " ".join(f"{value:z7.4f}" for value in exponent[~np.isnan(exponent)]),
                 *(column[slot] for column in columns.values()),

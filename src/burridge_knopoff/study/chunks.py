@@ -27,6 +27,6 @@ def incomplete_chunks(study: Study, results: Path) -> list[Path]:
         if mark.exists():
             finished = mark.stat().st_mtime
             paths = (results / study.run_file(**point) for point in points)
-            if not all(path.exists() and path.stat().st_mtime <= finished for path in paths):
+            if not all(path.is_file() and path.stat().st_mtime <= finished for path in paths):
                 marks.append(mark)
     return marks

@@ -10,7 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from burridge_knopoff.provenance.bad_file import REMEDY
-from burridge_knopoff.provenance.files import nearest_folder
+from burridge_knopoff.provenance.files import nearest_folder, read_regular
 
 #: Only the end of a log is read.
 _TAIL = 20_000
@@ -53,7 +53,7 @@ def progress_of(logs: Iterable[str | Path], since: float = 0.0) -> float:
     for log in map(Path, logs):
         with suppress(OSError):
             if log.stat().st_mtime >= since:
-                shares += map(float, _PROGRESS.findall(log.read_bytes()[-_TAIL:]))
+                shares += map(float, _PROGRESS.findall(read_regular(log)[-_TAIL:]))
     return min(max(shares), 1.0)
 
 
@@ -69,7 +69,7 @@ def bad_files(logs: Iterable[str | Path]) -> list[str]:
 
 def _last_error(log: str | Path) -> str:
     try:
-        text = Path(log).read_bytes()[-_TAIL:].decode("utf-8", errors="replace")
+        text = read_regular(log)[-_TAIL:].decode("utf-8", errors="replace")
     except OSError:
         return ""
     _, traceback, message = text.rpartition(_TRACEBACK)

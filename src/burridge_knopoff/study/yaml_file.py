@@ -10,7 +10,7 @@ from typing import Any
 import yaml
 
 from burridge_knopoff.messages import full_key
-from burridge_knopoff.provenance.files import display_path
+from burridge_knopoff.provenance.files import display_path, read_regular
 from burridge_knopoff.values import OTHER_NUMBER, WHOLE_NUMBER
 
 _TAG = "tag:yaml.org,2002:"
@@ -91,9 +91,7 @@ def read_yaml(path: str | Path) -> Any:
     Raises ConfigError, one line, if the file cannot be read, or if a mapping has a repeated key or one that is no text.
     """
     try:
-        if Path(path).exists() and not Path(path).is_file():
-            raise OSError("it is not a regular file")
-        loader = _Loader(Path(path).read_text(encoding="utf-8-sig"))
+        loader = _Loader(read_regular(path).decode("utf-8-sig"))
         node = loader.get_single_node()
         if node is not None and _size(node, {}) > MOST_VALUES:
             raise ConfigError(f"more than {MOST_VALUES} values, with aliases expanded")

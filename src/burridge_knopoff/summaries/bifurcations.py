@@ -10,6 +10,9 @@ step of the grid outside. `change` is *change* if the kind of motion, the symmet
 the orbits stay stable but their stops change. Where multipliers jump, `multiplier_beyond` differs from `multiplier`;
 both have five digits and a nonnegative imaginary part. Where a doubled orbit ends at a period doubling, `period` and
 `stops` are those of the doubled orbit, and the multiplier −1 is that of the single one.
+
+`torus` has the tori that lie between two orbits of a branch without being seen at any value of `refined.nc`; see
+`continuation.tori`. Inside, the torus is locked to one orbit after another.
 """
 
 from __future__ import annotations
@@ -22,14 +25,17 @@ from typing import Any
 import numpy as np
 import xarray
 
+from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
 from burridge_knopoff.continuation.bifurcations import LEAST_ERROR, Entry, entries
 from burridge_knopoff.continuation.branch_changes import Change, branch_changes
 from burridge_knopoff.continuation.followed_orbits import FollowedOrbits, follow_orbits
+from burridge_knopoff.continuation.tori import find_tori
 from burridge_knopoff.dataset.columns import Column, column_values
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import ANSWER, Variable, flag
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.kind import MotionKind
+from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
@@ -37,7 +43,8 @@ from burridge_knopoff.provenance.keys import digest_of
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.grid import values_of
-from burridge_knopoff.study.model import model_of
+from burridge_knopoff.study.model import model_of, motion_of
+from burridge_knopoff.summaries import tori
 from burridge_knopoff.summaries.edges import saddle_at_crisis
 
 #: Largest number of bifurcations that are listed one by one.
@@ -146,6 +153,8 @@ BIFURCATIONS = {
         _AT, "f8", "distance from the saddle: distance of the attractor from the saddle orbit before the crisis"
     ),
 }
+#: Columns that tell how a branch changes.
+CHANGE = ("change", "from_branch", "to_branch", "motion_before", "motion_after")
 _SEGMENT = "number of the segment: of a branch, whose orbits are in the order in which they were continued"
 _STABLE = "stable: whether all multipliers except that of the flow lie inside the unit circle"
 #: Columns of an orbit, from (number of its segment, branch of the segment, orbit).
@@ -170,6 +179,7 @@ VARIABLES: dict[str, Variable] = {
     **BIFURCATIONS,
     "orbit_law": Variable(_ORBIT, "U", "friction law"),
     **ORBITS,
+    **tori.VARIABLES,
 }
 #: Significant digits of the stored values: further digits differ between machines.
 PLACES = 11
@@ -189,7 +199,8 @@ def bifurcations_of_law(
     decides = {key: value for key, value in config.items() if key != "a"}
     digest = digest_of(decides, source_fingerprint("burridge_knopoff.continuation.bifurcations"))
     folder = cache / f"bifurcations {law}" / digest
-    return one_law(model, attractors.sel(law=law), refined.sel(law=law), cores, folder)
+    settings, motion = SearchSettings(**config["attractors"]), motion_of(config)
+    return one_law(model, attractors.sel(law=law), refined.sel(law=law), cores, folder, settings, motion)
 
 
 def merge_laws(parts: Sequence[xarray.Dataset], edges: xarray.Dataset | None) -> xarray.Dataset:
@@ -209,12 +220,15 @@ def one_law(
     refined: xarray.Dataset,
     processes: int = 1,
     folder: str | Path | None = None,
+    settings: SearchSettings = SEARCH,
+    motion: MotionSettings = MOTION,
 ) -> xarray.Dataset:
     """Return the bifurcations of one law.
 
     model : with this law, at any a
     attractors, refined : of this law, at the values of the grid, and at all
     processes, folder : see `follow_orbits`
+    settings, motion : of the search for the attractors, for the tori between them
     """
     law = str(attractors["law"].item())
     refinement = refined.load()
@@ -236,7 +250,13 @@ def one_law(
         name: _round_digits(value, 10)
         for name, value in column_values(ORBITS, {(k,): row for k, row in enumerate(points)}, sizes).items()
     }
-    rounded |= {"law": np.repeat(law, len(bifurcations)), "orbit_law": np.repeat(law, len(points))}
+    between = find_tori(refinement, orbits, settings, motion, processes)
+    rounded |= {
+        name: _round_digits(value, tori.ROTATION_DIGITS if name == "torus_rotation_number" else 10)
+        for name, value in tori.torus_values(between).items()
+    }
+    counts = {"law": len(bifurcations), "orbit_law": len(points), "torus_law": len(between)}
+    rounded |= {name: np.repeat(law, count) for name, count in counts.items()}
     head = {"v": model.v, "contact": model.contact}
     return _dataset([law], rounded, attractors["block"].variable, head)
 
@@ -249,7 +269,7 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
 
 
 def listing(dataset: xarray.Dataset) -> str:
-    """Return a line for each bifurcation: its kind, the change of the branch, and the stops on both sides."""
+    """Return a line for each bifurcation, with the change of the branch and the stops on both sides, and each torus."""
     columns = {name: dataset[name].values for name in ("law", *BIFURCATIONS)}
     lines = []
     for number in range(dataset.sizes["bifurcation"]):
@@ -257,7 +277,7 @@ def listing(dataset: xarray.Dataset) -> str:
         kind = BifurcationKind(row["kind"])
         # A fold is always a turning point.
         words = kind.words + (" (turning point)" if kind == BifurcationKind.GRAZING and row["turns"] == 1 else "")
-        parts = [f"{row['law']}, a = {row['a']:.10g} +/- {row['a_error']:.2g}: {words}", _change_text(row)]
+        parts = [f"{row['law']}, a = {row['a']:.10g} +/- {row['a_error']:.2g}: {words}", change_text(row)]
         low, high = row["lifetime_low"], row["lifetime_high"]
         if np.isfinite(low):
             parts.append(
@@ -270,11 +290,12 @@ def listing(dataset: xarray.Dataset) -> str:
             beyond = f", beyond it {_format_stops(row['stops_beyond'])}" if (row["stops_beyond"] >= 0).all() else ""
             parts.append(f"period {row['period']:.6g}, stops {_format_stops(row['stops'])}{beyond}")
         lines.append("; ".join(parts))
+    lines += tori.torus_lines(dataset)
     return "\n".join(lines or ["No bifurcation was found between the values of a."]) + "\n"
 
 
-def _change_text(row: Mapping[str, Any]) -> str:
-    """Return the change of a branch at a bifurcation, as a increases, as text."""
+def change_text(row: Mapping[str, Any]) -> str:
+    """Return the change of a branch at a bifurcation, as a increases, as text; row : values by the names in CHANGE."""
     before, after = (MotionKind(row[f"motion_{side}"]).words for side in ("before", "after"))
     low, high = (f"branch {row[name]}" if row[name] >= 0 else "" for name in ("from_branch", "to_branch"))
     match Change(row["change"]):

@@ -23,10 +23,16 @@ from burridge_knopoff.motion.frequency import sampled_motion
 from burridge_knopoff.motion.modes import modes_of
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
+from burridge_knopoff.running.trajectory import Trajectory
+from burridge_knopoff.summaries.one_frequency import has_one_frequency
 
 #: Time for which the motion settles after the detuning, and time for which its exponents, and then its frequencies and
 #: modes, are measured.
 TRANSIENT, WINDOW = 4000.0, 4000.0
+
+#: The window of the exponents is doubled up to this one if the end blocks have one frequency but it is not certain, by
+#: so many standard errors, that a perturbation of their phase decays.
+LONGEST_WINDOW, STANDARD_ERRORS = 64000.0, 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,22 +79,14 @@ def detuned_motion(model: Model, start: ChainState, detuning: float, exponents: 
     All numbers are NaN if the run does not complete.
     """
     detuned = detuned_model(model, detuning)
-    settings = Settings(
-        transient=TRANSIENT,
-        window=WINDOW,
-        sampling=WINDOW,
-        trajectory=0.0,
-        event_window=0.0,
-        lyapunov_exponents=exponents,
-        lyapunov_alignment=0.25 * TRANSIENT,
-    )
-    settled = run(detuned, start, settings, section_only=True)
+    settled = _measured(detuned, start, WINDOW, exponents)
     if settled.status != "completed":
         unknown = np.full(model.blocks, math.nan)
-        exponent = settled.lyapunov_exponent, settled.lyapunov_error
-        return DetunedMotion(unknown, unknown, *exponent, unknown, math.nan, math.nan, settled.final)
+        exponents_with_errors = settled.lyapunov_exponent, settled.lyapunov_error
+        return DetunedMotion(unknown, unknown, *exponents_with_errors, unknown, math.nan, math.nan, settled.final)
     motion = sampled_motion(detuned, settled.final, WINDOW)
     frequency, error = motion.frequencies()
+    exponent, exponent_error = _resolved_exponents(detuned, settled, exponents, bool(has_one_frequency(frequency)))
     share, ratio = np.full(model.blocks, math.nan), np.complex128(math.nan)
     if np.isfinite(frequency[0]):
         modes = modes_of(motion)
@@ -97,11 +95,41 @@ def detuned_motion(model: Model, start: ChainState, detuning: float, exponents: 
     return DetunedMotion(
         frequency,
         error,
-        settled.lyapunov_exponent,
-        settled.lyapunov_error,
+        exponent,
+        exponent_error,
         share,
         # Python's own abs of a complex NaN may raise OverflowError, by an error that an earlier call left.
         float(np.abs(ratio)),
         math.degrees(np.angle(ratio)) % 360.0,
         settled.final,
     )
+
+
+def _measured(model: Model, start: ChainState, window: float, exponents: int) -> Trajectory:
+    """Return a run that settles and then determines Lyapunov exponents over a window."""
+    settings = Settings(
+        transient=TRANSIENT,
+        window=window,
+        sampling=window,
+        trajectory=0.0,
+        event_window=0.0,
+        lyapunov_exponents=exponents,
+        lyapunov_alignment=0.25 * TRANSIENT,
+    )
+    return run(model, start, settings, section_only=True)
+
+
+def _resolved_exponents(
+    model: Model, settled: Trajectory, exponents: int, one_frequency: bool
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return exponents and errors of a motion, over longer windows while the third may be 0; see LONGEST_WINDOW."""
+    motion, window = settled, WINDOW
+    while (
+        one_frequency
+        and window < LONGEST_WINDOW
+        and exponents > 2
+        and not motion.lyapunov_exponent[2] < -STANDARD_ERRORS * motion.lyapunov_error[2]
+    ):
+        window *= 2.0
+        motion = _measured(model, settled.final, window, exponents)
+    return motion.lyapunov_exponent, motion.lyapunov_error

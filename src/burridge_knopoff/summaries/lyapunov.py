@@ -1,6 +1,6 @@
 """Lyapunov exponents over (law, initial, a), or the study's parameters in place of a, and the kind of motion.
 
-The kind follows from the exponents, the repetition of the state, and ⟨J⟩.
+The kind follows from the exponents, the repetition of the state, ⟨J⟩, and whether the motion still changes.
 
 A run from a symmetric state may stay on an unstable orbit (`unstable`). On an orbit that is its own mirror image, W'
 alone may repeat after half of `section_period`. The thresholds are attributes; in a study of several parameters they
@@ -17,12 +17,13 @@ import xarray
 
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import PERIOD, YES_OR_NO, Variable, flag
+from burridge_knopoff.motion.evidence import Evidence
 from burridge_knopoff.motion.kind import (
     CHAOS,
     Motion,
     MotionKind,
     is_zero_exponent,
-    motion_of_repetition,
+    motion_of_evidence,
     synchronization_distance,
 )
 from burridge_knopoff.motion.period import Repetition
@@ -62,7 +63,7 @@ VARIABLES = {**{name: all_runs.VARIABLES[name] for name in _OF_RUNS}, **MOTION_V
 #: Variables of `runs` from which the kind of motion follows.
 _EVIDENCE = (
     *("status", "mirror_symmetric", "v", "mean_distance"),
-    *("repetition_points", "repetition_period", "repetition_divergence"),
+    *("repetition_points", "repetition_period", "repetition_divergence", "stops", "drifts", "settles"),
     *("lyapunov_exponent", "lyapunov_error"),
 )
 
@@ -103,6 +104,9 @@ def _motion_of_run(
     points: int,
     period: float,
     divergence: float,
+    stops: int,
+    drifts: int,
+    settles: int,
     exponent: np.ndarray,
     error: np.ndarray,
     settings: MotionSettings,
@@ -112,8 +116,9 @@ def _motion_of_run(
     motion = Motion(MotionKind.UNDETERMINED)
     if status == Status.COMPLETED:
         repetition = Repetition(int(points), float(period), float(divergence))
+        evidence = Evidence(repetition, bool(stops), bool(drifts), bool(settles))
         distance = synchronization_distance(float(mean_distance), bool(symmetric))
-        motion = motion_of_repetition(repetition, distance, exponent, error, scaled)
+        motion = motion_of_evidence(evidence, distance, exponent, error, scaled)
     zeros = int(np.count_nonzero(is_zero_exponent(exponent, error, scaled)))
     return motion.kind, motion.unstable, motion.section_period, motion.period, zeros
 

@@ -1,8 +1,11 @@
-"""Flags of the synchronized orbit and its loss, shared by the file of orbits, the figures and the report."""
+"""Flags of the synchronized orbit and its stability, shared by the file of orbits, the figures and the report."""
 
 from __future__ import annotations
 
+import math
 from enum import IntEnum
+
+import xarray
 
 
 class OrbitStatus(IntEnum):
@@ -18,9 +21,27 @@ class OrbitStatus(IntEnum):
     NOT_THREE_BLOCKS = 3
 
 
+class CriticalStability(IntEnum):
+    """The stability of the synchronized orbit at a_c as a grows, numbered as in netCDF files.
+
+    If the orbit repels mirror-symmetric perturbations, it is unstable on both sides: synchrony does not end there.
+    """
+
+    UNDETERMINED = -1
+    UNSTABLE = 0
+    LOST = 1
+    GAINED = 2
+
+
 class BifurcationSide(IntEnum):
     """Side of a_c on which the branching orbits exist, numbered as in netCDF files."""
 
     UNDETERMINED = -1
     SUBCRITICAL = 0
     SUPERCRITICAL = 1
+
+
+def stability_edge(orbits: xarray.Dataset) -> float:
+    """Return a_c of one law; NaN if there is none, or if the orbit is unstable on both sides."""
+    unstable = orbits["critical_stability"].item() == CriticalStability.UNSTABLE
+    return math.nan if unstable else orbits["critical_a"].item()

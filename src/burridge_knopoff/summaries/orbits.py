@@ -1,4 +1,7 @@
-"""The synchronized orbit over (law, a), its loss of stability, the branching orbits, and a comparison of the laws.
+"""The synchronized orbit over (law, a), its stability, the branching orbits, and a comparison of the laws.
+
+On this orbit the end blocks stop once in a period. Where it repels mirror-symmetric perturbations, synchronized motion
+of another period may attract, and neither the transverse multiplier nor a_c says where synchrony is stable.
 
 `multiplier` has six modes: the transverse one; the flow, whose multiplier 1 is computed as a check; two of
 mirror-symmetric perturbations, the larger modulus first, the second 0 to rounding if all blocks stick at once; and two
@@ -16,7 +19,7 @@ import xarray
 
 from burridge_knopoff.dataset.decoding import decode_flags
 from burridge_knopoff.dataset.summary import axes, summary
-from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.dataset.variables import ANSWER, Answer, Variable, flag
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
@@ -32,11 +35,13 @@ from burridge_knopoff.periodic_orbits.synchronized_bifurcations import (
     critical_a_error,
     grazing_a,
     symmetric_period_doubling_a,
+    transverse_slope,
 )
 from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.summaries import antiphase_orbit
 from burridge_knopoff.summaries.amplitude import fit_power_law, sweep
-from burridge_knopoff.summaries.orbit_flags import BifurcationSide, OrbitStatus
-from burridge_knopoff.summaries.sentences import lines_of
+from burridge_knopoff.summaries.orbit_flags import BifurcationSide, CriticalStability, OrbitStatus
+from burridge_knopoff.summaries.sentences import lines_of, values_where
 
 BLOCKS = 3
 MODES = ("transverse", "flow", "symmetric_1", "symmetric_2", "stick_1", "stick_2")
@@ -50,6 +55,16 @@ LARGEST_FITTED = 1.0e-2
 #: Distances from a_c of the runs of upward and downward sweeps, for the paper's springs and thresholds.
 OFFSETS = (-2e-3, -1e-3, 1e-3, 2e-3, 4e-3, 8e-3, 1.6e-2)
 
+#: What happens at a_c, in words.
+CHANGES = {
+    CriticalStability.UNDETERMINED: "the transverse multiplier of the synchronized orbit reaches the unit circle at "
+    "a = {}",
+    CriticalStability.UNSTABLE: "the synchronized orbit, unstable within synchrony, changes its transverse stability "
+    "at a = {}: no end of synchrony",
+    CriticalStability.LOST: "the synchronized orbit loses its transverse stability at a = {}",
+    CriticalStability.GAINED: "the synchronized orbit gains its transverse stability at a = {}",
+}
+
 _CURVE = ("law", "a")
 _BRANCH = ("law", "branch_asymmetry")
 VARIABLES = {
@@ -62,7 +77,16 @@ VARIABLES = {
     "center_stick_time": Variable(_CURVE, "f8", "stick time of block 2: in a period"),
     "transverse_multiplier": Variable(_CURVE, "f8", "Floquet multiplier mu of x_1 - x_3"),
     "multiplier": Variable((*_CURVE, "mode", "part"), "f8", "Floquet multipliers"),
+    "attracts_within_synchrony": Variable(
+        _CURVE, "i1", "attracts within synchrony: whether mirror-symmetric perturbations of the orbit decay", ANSWER
+    ),
     "critical_a": Variable(("law",), "f8", "a_c, at which |mu| reaches 1"),
+    "critical_stability": Variable(
+        ("law",),
+        "i1",
+        "stability at a_c: as a grows; unstable on both sides if the orbit repels mirror-symmetric perturbations there",
+        flag("i1", CriticalStability),
+    ),
     "critical_a_error": Variable(
         ("law",), "f8", "error of a_c: change if mu is computed from finite differences of the flow"
     ),
@@ -93,7 +117,9 @@ VARIABLES = {
     "amplitude_coefficient": Variable(("law",), "f8", "coefficient of that power law"),
     "amplitude_coefficient_error": Variable(("law",), "f8", "error of the coefficient: as that of the exponent"),
     "sweep_asymmetry": Variable(
-        ("law", "direction", "sweep_offset"), "f8", "|x_1 - x_3| in a sweep: in the runs of a sweep of a through a_c"
+        ("law", "direction", "sweep_offset"),
+        "f8",
+        "|x_1 - x_3| in a sweep: in the runs of a sweep of a through a_c, NaN if the orbit is unstable on both sides",
     ),
     "hysteresis": Variable(
         ("law",), "f8", "hysteresis: largest difference of |x_1 - x_3| between the upward and downward sweeps"
@@ -119,6 +145,7 @@ COMPARISON = {
     "effective_grazing_a_difference": Variable(
         (), "f8", "difference of grazing_a: effective_a of the nonlinear grazing_a minus the linearized grazing_a"
     ),
+    **antiphase_orbit.VARIABLES,
 }
 _COORDINATES = {
     "mode": Variable(("mode",), "O", "Floquet mode", coordinate=True),
@@ -152,6 +179,9 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
         _fill_transition(values, i, orbits[laws[i]], asymmetry)
     if len(pair) == len(PAPER_LAWS):
         _compare(values, laws, pair[1], orbits[PAPER_LAWS[0]], grid)
+        if models[0].blocks == BLOCKS:
+            differences = [antiphase_orbit.antiphase_differences(pair[0], pair[1], float(a)) for a in grid]
+            values.update(zip(antiphase_orbit.VARIABLES, np.transpose(differences), strict=True))
     return summary(
         "The synchronized orbit of three blocks, its Floquet multipliers and its loss of stability",
         variables,
@@ -205,14 +235,15 @@ def _fill_curve(
         values["residual"][i, k] = orbit.residual
         values["lateral_slip_time"][i, k] = orbit.period - orbit.stick_time(0)
         values["center_stick_time"][i, k] = orbit.stick_time(1)
-        # Without stops a perturbation of x_1 − x_3 has two multipliers.
-        if not orbit.stop_counts[0]:
-            continue
         try:
-            spectrum = modes(orbit)
+            values["attracts_within_synchrony"][i, k] = multipliers(orbit).attracts_within_synchrony
         except OrbitError as error:
             print(f"{model.law.name}: {error}")
             continue
+        # Without stops a perturbation of x_1 − x_3 has two multipliers.
+        if not orbit.stop_counts[0]:
+            continue
+        spectrum = modes(orbit)
         values["transverse_multiplier"][i, k] = spectrum[0].real
         values["multiplier"][i, k] = np.stack([spectrum.real, spectrum.imag], axis=-1)
 
@@ -251,11 +282,24 @@ def _fill_transition(values: dict[str, Any], i: int, orbits: KnownOrbits | None,
         BifurcationKind.PITCHFORK if transverse_multiplier(orbits, critical) > 0.0 else BifurcationKind.PERIOD_DOUBLING
     )
     values["bifurcation_kind"][i] = kind
-    runs = critical + orbits.model.chain.a_unit * np.array(OFFSETS)
-    values["sweep_asymmetry"][i] = sweep(orbits, runs), sweep(orbits, runs[::-1])[::-1]
-    values["hysteresis"][i] = np.abs(np.diff(values["sweep_asymmetry"][i], axis=0)).max()
+    values["critical_stability"][i] = stability = critical_stability(orbits, critical)
+    # Runs of a sweep would leave an orbit that is unstable on both sides.
+    if stability != CriticalStability.UNSTABLE:
+        runs = critical + orbits.model.chain.a_unit * np.array(OFFSETS)
+        values["sweep_asymmetry"][i] = sweep(orbits, runs), sweep(orbits, runs[::-1])[::-1]
+        values["hysteresis"][i] = np.abs(np.diff(values["sweep_asymmetry"][i], axis=0)).max()
     if kind == BifurcationKind.PITCHFORK:
         _fill_branch(values, i, orbits, critical, asymmetry)
+
+
+def critical_stability(orbits: KnownOrbits, critical: float) -> CriticalStability:
+    """Return how the stability of the synchronized orbit changes at a_c as a grows."""
+    if not multipliers(orbits.at(critical)).attracts_within_synchrony:
+        return CriticalStability.UNSTABLE
+    slope = transverse_slope(orbits, critical)
+    if np.isnan(slope):
+        return CriticalStability.UNDETERMINED
+    return CriticalStability.LOST if slope > 0.0 else CriticalStability.GAINED
 
 
 def transverse_multiplier(orbits: KnownOrbits, a: float) -> float:
@@ -318,20 +362,23 @@ def effective_a(model: Model, a: float) -> float:
 
 
 def digest(data: xarray.Dataset) -> str:
-    """Return where the synchronized orbit loses its transverse stability, and by which bifurcation."""
+    """Return where the synchronized orbit attracts within synchrony, and how its stability changes at a_c."""
+    a = data["a"].values
 
     def sentence(part: xarray.Dataset) -> str:
         if (part["status"].values == OrbitStatus.NOT_THREE_BLOCKS).any():
             return "not computed, as the chain has not three blocks"
         critical, grazing = part["critical_a"].item(), part["grazing_a"].item()
-        words = ["no a was found at which the synchronized orbit loses its transverse stability"]
+        words = ["no a was found at which the transverse multiplier of the synchronized orbit reaches the unit circle"]
         if np.isfinite(critical):
             kind = BifurcationKind(part["bifurcation_kind"].item())
             side = decode_flags(part["bifurcation_side"]).item()
             how = f"{side} {kind.words}" if side != "undetermined" else kind.words
-            words = [f"the synchronized orbit loses its transverse stability at a = {critical:.10g} ({how})"]
+            words = [CHANGES[CriticalStability(part["critical_stability"].item())].format(f"{critical:.10g} ({how})")]
         if np.isfinite(grazing):
             words.append(f"block 2 begins to stick at a = {grazing:.10g}")
+        if (repels := part["attracts_within_synchrony"].values == Answer.NO).any():
+            words.append(f"it repels mirror-symmetric perturbations {values_where(repels, a)}")
         return "; ".join(words)
 
     return lines_of(data, ["law"], sentence)

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.model.sampling import fraction_interval
-
 if TYPE_CHECKING:
     import xarray
 
@@ -71,8 +69,8 @@ def _simplest_fraction(number: float, error: float) -> Fraction:
     return Fraction(number).limit_denominator(LARGEST_DENOMINATOR)
 
 
-def locked_share(rotation: xarray.Dataset, inside: np.ndarray) -> tuple[float, float, float]:
-    """Return the fraction of a at which the motion is locked, and its 95 % Wilson interval; NaN if none is known.
+def locked_share(rotation: xarray.Dataset, inside: np.ndarray) -> float:
+    """Return the share of the values of a at which the motion is locked; NaN if none is known.
 
     inside : which values of a count, shape (value,)
 
@@ -80,6 +78,4 @@ def locked_share(rotation: xarray.Dataset, inside: np.ndarray) -> tuple[float, f
     """
     locked = rotation["locked"].values[inside & (rotation["in_grid"].values == 1)]
     locked = locked[locked >= 0]
-    if not len(locked):
-        return np.nan, np.nan, np.nan
-    return fraction_interval(int(np.count_nonzero(locked)), len(locked))
+    return float(locked.mean()) if len(locked) else np.nan

@@ -8,8 +8,9 @@ frequencies, the Lyapunov exponents and the shares of the normal modes then deci
 
 The rotation number counts the turns of (x_1 − x_N, U_1' − U_N') for each turn of (x_m, U_m' − v), m being the middle
 block or the sum over both middle blocks, as a weighted average over `duration`. After detuning, the exponents are taken
-over `detuned_window` after `detuned_transient`, the frequencies and modes over the following `detuned_window`. Each
-detuning begins where the one before ended.
+over `detuned_window` after `detuned_transient`, or up to `detuned_longest_window` if a third exponent that is not
+certain to be negative would decide; the frequencies and modes over the following `detuned_window`. Each detuning begins
+where the one before ended.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from burridge_knopoff.motion.rotation import rotation_number
 from burridge_knopoff.running.processes import ParallelMap, parallel_map
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.study.formatting import format_count, span
-from burridge_knopoff.summaries.detuning import TRANSIENT, WINDOW, detuned_model, detuned_motions
+from burridge_knopoff.summaries.detuning import LONGEST_WINDOW, TRANSIENT, WINDOW, detuned_model, detuned_motions
 from burridge_knopoff.summaries.sentences import lines_of
 
 TITLE = "Rotation number of branch 1, and branches 1 and 2 after detuning"
@@ -162,6 +163,7 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model], processes: int =
         "duration": DURATION,
         "detuned_transient": TRANSIENT,
         "detuned_window": WINDOW,
+        "detuned_longest_window": LONGEST_WINDOW,
         "history": "snakemake, from refined.nc",
     }
     coordinates = {

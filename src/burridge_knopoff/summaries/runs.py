@@ -18,7 +18,9 @@ from burridge_knopoff.dataset.columns import empty_columns
 from burridge_knopoff.dataset.point import POINT_VARIABLES
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
-from burridge_knopoff.motion.period import SECTION, count_distinct, repetition_of
+from burridge_knopoff.motion.evidence import RECORD, evidence_of
+from burridge_knopoff.motion.kind import synchronization_distance
+from burridge_knopoff.motion.period import count_distinct
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.settling import LEVELS
 from burridge_knopoff.running.status import Status
@@ -46,11 +48,25 @@ VARIABLES = {
     "repetition_points": Variable(
         RUN, "i4", "section points until the state repeats: upward ones; 0 if the state does not repeat"
     ),
-    "repetition_period": Variable(RUN, "f8", "time until the state repeats: NaN if it does not"),
+    "repetition_period": Variable(
+        RUN,
+        "f8",
+        "time until the state repeats: NaN if it does not, or if nothing recorded tells it from its mirror image",
+    ),
     "repetition_divergence": Variable(
         RUN,
         "f8",
         "divergence of cycles: factor by which the distance of successive cycles grows, at most 1 if these converge",
+    ),
+    "stops": Variable(RUN, "i1", "stops: whether a block stops among the recorded events of the window", YES_OR_NO),
+    "drifts": Variable(
+        RUN,
+        "i1",
+        "change of regular motion: whether <J> or, without stops, the amplitude differs between parts of the window",
+        YES_OR_NO,
+    ),
+    "settles": Variable(
+        RUN, "i1", "end of chaos: whether section points repeat in the last eighth of the window only", YES_OR_NO
     ),
     "mirror_symmetric": Variable(RUN, "i1", "mirror symmetry: whether the chain is its own mirror image", YES_OR_NO),
 }
@@ -84,36 +100,46 @@ def over_runs(
     return values
 
 
-def summarize(study: Study, results: Path, period_tolerance: float, longest_period: float) -> xarray.Dataset:
+def summarize(
+    study: Study, results: Path, *, period_tolerance: float, longest_period: float, synchronization_threshold: float
+) -> xarray.Dataset:
     """Return the scalars of all runs.
 
     results : folder of the study
-    period_tolerance, longest_period : of a repetition, see `MotionSettings`
+    period_tolerance, longest_period, synchronization_threshold : see `MotionSettings`
     Raises BadFile, one line, for a point that is missing, corrupt or out of date.
     """
-    motion = MotionSettings(period_tolerance=period_tolerance, longest_period=longest_period)
+    motion = MotionSettings(
+        period_tolerance=period_tolerance,
+        longest_period=longest_period,
+        synchronization_threshold=synchronization_threshold,
+    )
 
     def scalars(run: Mapping[str, np.ndarray], point: Mapping[str, str]) -> dict[str, Any]:
         values: dict[str, Any] = {name: run[name] for name in _COPIED}
-        values["mirror_symmetric"] = study.run_of(**point)[0].chain.is_mirror_symmetric
+        symmetric = study.run_of(**point)[0].chain.is_mirror_symmetric
+        values["mirror_symmetric"] = symmetric
         if run["status"] == Status.COMPLETED:
             upward = run["crossing_velocity"][run["crossing_direction"] > 0]
             values["section_count"] = count_distinct(upward[len(upward) // 2 :])
             if len(upward):
                 values |= {f"section_velocity_{name}": getattr(upward, name)() for name in ("mean", "min", "max")}
-            repetition = repetition_of(run, motion.scaled_to_velocity(float(run["v"])))
-            values |= {f"repetition_{name}": value for name, value in vars(repetition).items()}
+            distance = synchronization_distance(float(run["mean_distance"]), symmetric)
+            evidence = evidence_of(run, distance, motion.scaled_to_velocity(float(run["v"])))
+            values |= {f"repetition_{name}": value for name, value in vars(evidence.repetition).items()}
+            values |= {name: getattr(evidence, name) for name in ("stops", "drifts", "settles")}
         return values
 
     settings = study.settings(study.laws[0])
     sizes = {"exponent": settings.exponent_count(study.chain), "level": len(LEVELS)}
-    values = over_runs(study, results, VARIABLES, [*_COPIED, *SECTION, "v"], scalars, **sizes)
+    values = over_runs(study, results, VARIABLES, [*_COPIED, *RECORD, "v"], scalars, **sizes)
     parameters = point_axes(study)
     coordinates = {**parameters, **axes({"level": POINT_VARIABLES["level"]}, level=LEVELS)}
     # A parameter of the grid has a coordinate of its own.
     if "v" not in parameters:
         coordinates["v"] = ((), study.config["v"], POINT_VARIABLES["v"].all_attributes())
-    about = {"section": str(settings.section), "period_tolerance": period_tolerance, "longest_period": longest_period}
+    thresholds = ("period_tolerance", "longest_period", "synchronization_threshold")
+    about = {"section": str(settings.section), **{name: motion.attributes[name] for name in thresholds}}
     variables = {
         name: replace(item, dimensions=(*parameters, *item.dimensions[len(RUN) :])) for name, item in VARIABLES.items()
     }

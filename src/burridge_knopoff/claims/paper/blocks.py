@@ -33,9 +33,11 @@ KIND_AND_MEAN, MEAN = "in the kind of motion and in ⟨J⟩", "in ⟨J⟩"
 def two_blocks_agree(evidence: Evidence, *, a: Range = TWO_BLOCKS, loose_share: LooseShare = 0.9) -> Verdict:
     """In the train model of two blocks both laws give practically the same results for a < 0.3.
 
-    The paper's results are kinds of motion and ⟨J⟩; it does not say what those of the earlier study are. The same
-    may mean the kind of motion and ⟨J⟩, or ⟨J⟩ alone, from all sampled states at each a. For comparison, the first
-    is measured for two blocks that are both pulled as well, which is not the paper's chain.
+    Holds if the laws agree from all sampled states at all values of a, and loosely at nine in ten of them.
+
+    The paper's results are kinds of motion and ⟨J⟩; it does not say what those of the earlier study are. The same may
+    mean the kind of motion and ⟨J⟩, or ⟨J⟩ alone. For comparison, the first is measured for two blocks that are both
+    pulled as well, which is not the paper's chain.
     """
     summary = evidence.summary("two_blocks")
     both = evidence.choose(evidence.law_comparison(summary), a)
@@ -87,9 +89,11 @@ def periodic_for_one_block(evidence: Evidence, *, a: Range = POSITIVE, loose_sha
     """The blocks start and stop at various times, periodically for one block and perhaps chaotically for two or
     more.
 
-    The two-block train starts from the sampled states of the comparison of two blocks, the single block from the
-    first of them, under both laws. «Perhaps chaotically» requires one chaotic motion of two blocks or of the
-    study's chain.
+    Holds if one block sticks and slips periodically at all values of a under both laws, and some motion of two blocks
+    or of the study's chain is chaotic («perhaps chaotically»); and loosely if one block does at nine in ten of them.
+
+    The two-block train starts from the sampled states of the comparison of two blocks, the single block from the first
+    of them.
     """
     evidence.check_runs()
     blocks = evidence.choose(evidence.summary("two_blocks"), a)

@@ -39,6 +39,7 @@ from burridge_knopoff.claims.verdict import (
     describe_where,
     extremes,
     join_words,
+    judge_shares,
     judge_worst_share,
     worst_verdict,
 )
@@ -63,11 +64,9 @@ def history_decides(
 ) -> Verdict:
     """For a < 0.1 the character of the motion depends on its history.
 
-    «The character of the motion» is its kind: synchronized, periodic, quasiperiodic or chaotic. History decides
-    where attractors of different kinds coexist. An attractor counts if sampled states or the study's initial states
-    reach it; mirror images count once.
-
-    samples : number of sampled states required to say that there is only one attractor
+    Holds if attractors of more than one kind, synchronized, periodic, quasiperiodic or chaotic, coexist at all values
+    of a under both laws, and loosely at nine in ten of them. An attractor counts if sampled states or the study's
+    initial states reach it. That there is only one takes {samples} sampled states.
     """
     attractors = evidence.choose(evidence.own_attractors(), a)
     shares, measured, single = {}, [], []
@@ -166,11 +165,13 @@ def same_for_both_laws(
 def plus_under_one_convention(evidence: Evidence, *, claims: tuple[str, ...] = OF_PLUS) -> Verdict:
     """All statements about plus hold together, under one convention of contact and start.
 
+    Holds if there is a convention under which all of them hold, and loosely if some of them hold loosely there. A
+    convention under which one of them is not judged is open, unless another fails there.
+
     «The total spring force must be greater than F(0)»: the contact is one-sided. The paper leaves open whether
     blocks may stick at τ = 0. Here a symmetric contact counts too, in case the paper's program used it.
 
-    claims : by name; each has to be judged before this one. This claim holds loosely if some of them hold loosely. A
-        convention under which one of them is not judged is open, unless another fails there.
+    claims : by name; each has to be judged before this one
     """
     verdicts = {name: evidence.verdicts[name] for name in claims}
     for verdict in verdicts.values():
@@ -221,18 +222,17 @@ def phases_decide(
     """End blocks whose initial phases are close synchronize for a between 0.005 and 0.08; opposite phases lead to a
     kind of anti-synchronization, which persists.
 
-    The conclusions say «below a = 0.1», but of the synchrony found from 0.005 to 0.08. The phases decide if nine of
-    ten states agree, at every amplitude. The claim holds loosely if they do at all amplitudes at which every
-    velocity is positive at the start, whatever the phases: only these states are oscillations about uniform
-    sliding.
+    Holds if, at every judged amplitude and at all values of a under both laws, the share of the states at most
+    {close:g}° apart that synchronize, and that of the states {opposite:g}° apart that end with a correlation of the
+    velocities of {correlation:g} or less, are at least {share:g}, each by the lower end of its Wilson interval; and
+    loosely at nine in ten of the values of a.
 
-    The paper does not mention the middle block. If it slides uniformly, only the end blocks oscillate. The claim
-    is ambiguous if it holds for one computed amplitude of the middle block and fails for another.
+    The conclusions say «below a = 0.1», but of the synchrony found from 0.005 to 0.08. The paper says neither how
+    large the oscillations are nor how the middle block moves. They may be oscillations about uniform sliding, with
+    amplitudes at which every velocity is positive at the start, whatever the phases; or of any computed amplitude.
+    The middle block may slide uniformly, so that only the end blocks oscillate, or oscillate as well.
 
-    inner_share : amplitude of the inner blocks, as a fraction, of the judged states; other fractions are reported too
-    close, opposite : phase difference in degrees up to which phases are close, and from which they are opposite
-    correlation : of the velocities of the end blocks; up to this value they are in antiphase
-    share : required fraction of states with this outcome, by the lower end of a Wilson interval
+    inner_share : amplitude of the inner blocks, as a fraction, under the first reading
     """
     evidence.check_blocks()
     phases = evidence.summary("phases")
@@ -260,7 +260,10 @@ def phases_decide(
     for law, low in zip(judged.laws, judged.synchronized.low, strict=True):
         lost = ~judged.inside & (low[:, judged.without_backward_slip] < share).any(axis=1)
         changes += describe_where("close phases do not synchronize", phases["a"].values, lost, law)
-    readings = {_format_inner_block(inner_share): judged.verdict}
+    everywhere = judged.shares_at(np.ones(len(judged.amplitude), dtype=bool))
+    large = judge_shares(everywhere, loose_share)[0]
+    readings = {_format_inner_block(inner_share): judged.verdict, "every amplitude": large}
+    changes.append(f"at every amplitude the claim {large}, since it is true {at_values(everywhere, a)}")
     for other in phases["inner_share"].values[phases["inner_share"].values != inner_share].tolist():
         where = _format_inner_block(other)
         try:

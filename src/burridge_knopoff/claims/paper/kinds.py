@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.choice import LooseShare, LooseTolerance, Points, Tolerance
+from burridge_knopoff.claims.choice import LooseShare, LooseTolerance, Tolerance
 from burridge_knopoff.claims.claim import claim
 from burridge_knopoff.claims.conventions import judge_conventions
 from burridge_knopoff.claims.evidence import Evidence, check_covered
@@ -18,7 +18,6 @@ from burridge_knopoff.claims.statement import Statement, Truth, for_all
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
-    LOOSELY,
     Measured,
     NotTestableError,
     Verdict,
@@ -194,10 +193,12 @@ def transition(
 ) -> Verdict:
     """Near a = 0.1 periodic or quasiperiodic motion turns into chaos.
 
-    The smallest a with a chaotic attractor, under both laws, lies between a value of a and the one before it, among
-    all at which attractors were searched for, including those inserted where attractors change. Chaos counts only
-    if an ensemble shows that it persists. Also reported: the windows of chaos; the smallest a with a chaotic run,
-    whose chaos may be transient; and a_c, where synchrony is lost.
+    Holds if the smallest a with a chaotic attractor is within {tolerance:g} of {claimed:g} under both laws, and loosely
+    within {loose:g}. It lies between a value of a and the one before it, among all at which attractors were searched
+    for, including those inserted where attractors change. Chaos counts only if an ensemble shows that it persists.
+
+    Also reported: the windows of chaos; the smallest a with a chaotic run, whose chaos may be transient; and a_c, where
+    synchrony is lost.
     """
     evidence.check_blocks()
     refined = evidence.summary("refined")
@@ -248,7 +249,8 @@ def plus_largest_exponent(
 ) -> Verdict:
     """From plus the largest Lyapunov exponent is close to zero for a < 0.1.
 
-    It is 0 within its error, by the study's thresholds `motion.zero_exponent` and `motion.standard_errors`.
+    Holds if it is 0 within its error, by the study's thresholds `motion.zero_exponent` and `motion.standard_errors`, at
+    all values of a, and loosely at nine in ten of them.
     """
     settings = MotionSettings(**evidence.config["motion"]).scaled_to_velocity(evidence.config["v"])
     runs = evidence.choose(evidence.state_summary("lyapunov", [initial]), a).sel(law=[law])
@@ -296,13 +298,11 @@ def plus_aperiodic(
     initial: str = "plus",
     laws: tuple[str, ...] = ("linearized",),
     at: float = 0.08,
-    points: Points = 8,
 ) -> Verdict:
     """From plus the motion at a = 0.08 is aperiodic.
 
-    Chaotic or quasiperiodic: regular motion that does not repeat within `motion.longest_period`, locked or not. The
-    paper takes a section of many points as evidence: the claim holds loosely if the motion repeats only after more
-    than `points` points of the section W = 0, a cloud.
+    Holds if the motion does not repeat within `motion.longest_period`, or is chaotic. Motion that repeats is periodic,
+    however many points its section has.
     """
     verdicts, measured, texts, elsewhere = [], [], [], []
     runs = evidence.choose(evidence.state_summary("lyapunov", initial), Range(above=0.0))
@@ -316,14 +316,13 @@ def plus_aperiodic(
                 f"the kind of motion from {initial} at a = {at:g} under the {law} law is undetermined"
             )
         period = int(run["section_period"].item())
-        verdicts.append(_judge_repetition(kind, period, points))
+        verdicts.append(_judge_repetition(kind))
         measured.append(Measured(f"section points in a period (0: not periodic), {law}", float(period)))
         if run.sizes.get("exponent", 0) > 1:
             exponent, error = (run[name].values[1] for name in ("lyapunov_exponent", "lyapunov_error"))
             measured.append(Measured(f"second exponent, {law}", float(exponent), float(error)))
         seen = f"after {period} section points" if period else f"within {longest:g} time units"
-        cloud = ", which look like a cloud" if period > points else ""
-        repeats = f"repeats {seen}{cloud}" if kind in PERIODIC_KINDS else f"does not repeat {seen}"
+        repeats = f"repeats {seen}" if kind in PERIODIC_KINDS else f"does not repeat {seen}"
         texts.append(f"{MotionKind(kind).words} ({law}): it {repeats}")
         aperiodic = ~kinds.sel(law=law).isin((*PERIODIC_KINDS, MotionKind.UNDETERMINED))
         elsewhere += describe_where("aperiodic", kinds["a"].values, aperiodic.values, law)
@@ -333,23 +332,21 @@ def plus_aperiodic(
         reached = {
             law: values
             for law in laws
-            if (values := reached_attractor(attractors, at, initial, law, "kind", "section_count"))
+            if (values := reached_attractor(attractors, at, initial, law, "kind"))
             and values[0] != MotionKind.UNDETERMINED
         }
         if not reached:
             return "", ""
-        verdict = worst_verdict(_judge_repetition(kind, count, points) for kind, count in reached.values())
-        return verdict, ", ".join(f"{MotionKind(int(kind)).words} ({law})" for law, (kind, _) in reached.items())
+        verdict = worst_verdict(_judge_repetition(kind) for (kind,) in reached.values())
+        return verdict, ", ".join(f"{MotionKind(int(kind)).words} ({law})" for law, (kind,) in reached.items())
 
     reason = f"The motion from {initial} at a = {at:g} is {join_words(texts)}."
     return judge_conventions(evidence, worst_verdict(verdicts), reason, measured, elsewhere, judge_attractors)
 
 
-def _judge_repetition(kind: int, period: int, points: int) -> str:
-    """Return the verdict on aperiodic motion for a kind and the section points in a period; see `aperiodic`."""
-    if kind not in PERIODIC_KINDS:
-        return HOLDS
-    return LOOSELY if kind == MotionKind.PERIODIC and period > points else FAILS
+def _judge_repetition(kind: int) -> str:
+    """Return the verdict on aperiodic motion for a kind."""
+    return FAILS if kind in PERIODIC_KINDS else HOLDS
 
 
 def _locking_ranges(evidence: Evidence, law: str, at: float, kind: int) -> list[str]:

@@ -11,7 +11,7 @@ import numpy as np
 from burridge_knopoff.claims.choice import LooseShare, LooseTolerance, RunPart, Tolerance
 from burridge_knopoff.claims.claim import claim
 from burridge_knopoff.claims.conventions import combine_readings
-from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.evidence import Evidence, check_covered
 from burridge_knopoff.claims.outcomes import one_chaos
 from burridge_knopoff.claims.range import BELOW, Range
 from burridge_knopoff.claims.statement import Case, Statement, Truth, decided
@@ -155,10 +155,12 @@ def stick_slip_alone(
 ) -> Verdict:
     """For a < 0.1 the only relevant nonlinearity is that of stick-slip.
 
-    It is relevant if some block stops on every attractor: while all slip, linearized motion grows without bound. That
-    of the friction law is not relevant if both laws give the same result, synchrony, other regular motion or chaos:
-    on the same attractors, branch by branch, or from the paper's states, which may lie near a boundary of basins that
-    the law moves.
+    Holds if some block stops on every attractor and both laws give the same result, synchrony, other regular motion or
+    chaos, at all values of a; and loosely at nine in ten of each. While all blocks slip, linearized motion grows
+    without bound, so that sticking is relevant where some block stops.
+
+    The results are those on the same attractors, branch by branch, or those from the paper's states, which may lie near
+    a boundary of basins that the law moves.
     """
     attractors = evidence.choose(evidence.own_attractors(), a)
     stopping = {}
@@ -228,8 +230,8 @@ def linearization_justified(
 ) -> Verdict:
     """The linearization of the friction law is justified for small a.
 
-    The laws differ by (aU')²/(1 + aU'). At the fastest slips of the runs this may be a hundredth of the static
-    friction, and loosely a twentieth.
+    Holds if the laws differ by at most {tolerance:g} of the static friction at the fastest slips of the runs, and
+    loosely by at most {loose:g}. They differ by (aU')²/(1 + aU').
 
     law : the linearized law, whose friction 1 − aU' gives the speed
     part : part of the runs: window, or run with its transient
@@ -252,74 +254,103 @@ def linearization_justified(
     return Verdict(verdict, reason, measured)
 
 
-@claim("Introduction", "friction_laws", "mean_distance")
+@claim("Introduction", "friction_laws", "orbits", "mean_distance")
 def springs_and_masses_help(
     evidence: Evidence,
     *,
     initial: tuple[str, ...] = ("minus", "plus"),
     law: str = "linearized",
     a: Range = BELOW,
-    claimed: float = 2.0,
-    tolerance: Tolerance = 0.5,
-    loose: LooseTolerance = 1.0,
+    claimed: float = 1.0,
+    tolerance: Tolerance = 0.25,
+    loose: LooseTolerance = 0.5,
 ) -> Verdict:
     """Strong springs and large masses, which make a small, justify the linearization.
 
-    The difference of the laws on a slipping block, (aU')², falls with the square of a if U' does not change. At one a,
-    linearized motion is proportional to v. Hence aU' is av times the ratio of slip speed to v, a function of a alone
-    that is known from the windows of the runs. What stronger springs do depends on what is held fixed. At a fixed v,
-    as in the paper's study, av falls with a. At a fixed velocity V of the driver v grows as a falls, and av = cV stays,
-    where F(0)/(1 + cV) is the friction. The paper's choice is the first reading.
+    Holds if the results of the laws become equal as a falls: the relative difference of ⟨J⟩ on the antiphase orbit,
+    branch 2, falls in proportion to a or faster, as a power of a that is at least {claimed:g} within {tolerance:g}; and
+    loosely within {loose:g}.
 
-    claimed : power of a with which the difference falls, or falls faster: that of (aU')² if U' did not change
+    What stronger springs do depends on what is held fixed. At a fixed v, as in the paper's study, av falls with a. At a
+    fixed velocity V of the driver v grows as a falls, and av = cV stays, where F(0)/(1 + cV) is the friction. The
+    paper's choice is the first reading.
+
+    The friction forces are a remark. They differ by (aU')² on a slipping block. At one a, linearized motion is
+    proportional to v, so that aU' is av times the ratio of slip speed to v, a function of a alone that is known from
+    the windows of the runs.
     """
     names = "at a fixed v", "at a fixed V, which leaves av = cV unchanged"
-    return _judge_powers(_fastest_slips(evidence, initial, law, a, "window"), names, claimed, tolerance, loose)
+    slips = _fastest_slips(evidence, initial, law, a, "window")
+    return _judge_powers(_result_differences(evidence, a), slips, names, claimed, tolerance, loose)
 
 
-@claim("Introduction", "friction_laws", "mean_distance", depends_on=("springs_and_masses_help",))
+@claim("Introduction", "friction_laws", "orbits", "mean_distance", depends_on=("springs_and_masses_help",))
 def low_friction_helps(
     evidence: Evidence,
     *,
     initial: tuple[str, ...] = ("minus", "plus"),
     law: str = "linearized",
     a: Range = BELOW,
-    claimed: float = 2.0,
-    tolerance: Tolerance = 0.5,
-    loose: LooseTolerance = 1.0,
+    claimed: float = 1.0,
+    tolerance: Tolerance = 0.25,
+    loose: LooseTolerance = 0.5,
 ) -> Verdict:
     """A low friction force that depends weakly on the velocity, which makes a small, justifies the linearization.
 
-    As in `springs_and_masses_help`, with a = cF(0)/√(km) and v = V√(km)/F(0). A weak dependence is a small c, which
-    leaves v as it is. A low friction is a small F(0): at a fixed velocity V of the driver v grows, and av = cV stays.
-    The difference of the laws is a fraction of F(0).
+    Holds, like `springs_and_masses_help`, if the relative difference of ⟨J⟩ on the antiphase orbit falls as a power of
+    a that is at least {claimed:g} within {tolerance:g}; and loosely within {loose:g}.
+
+    Here a = cF(0)/√(km) and v = V√(km)/F(0). A weak dependence is a small c, which leaves v as it is. A low friction is
+    a small F(0): at a fixed velocity V of the driver v grows, and av = cV stays. The difference of the forces is a
+    fraction of F(0).
     """
     names = "through c", "through F(0) at a fixed V, which leaves av = cV unchanged"
-    return _judge_powers(_fastest_slips(evidence, initial, law, a, "window"), names, claimed, tolerance, loose)
+    slips = _fastest_slips(evidence, initial, law, a, "window")
+    return _judge_powers(_result_differences(evidence, a), slips, names, claimed, tolerance, loose)
+
+
+def _result_differences(evidence: Evidence, a: Range) -> tuple[np.ndarray, list[np.ndarray]]:
+    """Return the values of a, and the relative differences of ⟨J⟩ on the antiphase orbit at a fixed v and fixed av."""
+    names = "antiphase_difference", "antiphase_difference_fixed_av"
+    orbits = evidence.choose(evidence.summary("orbits"), a)
+    differences = np.abs([orbits[name].values for name in names])
+    is_known = (differences > 0.0).all(axis=0)
+    check_covered(orbits["a"].values[is_known], a, "the antiphase orbit")
+    return orbits["a"].values[is_known], [*differences[:, is_known]]
 
 
 def _judge_powers(
-    slips: tuple[np.ndarray, np.ndarray], names: tuple[str, str], claimed: float, tolerance: float, loose: float
+    results: tuple[np.ndarray, list[np.ndarray]],
+    slips: tuple[np.ndarray, np.ndarray],
+    names: tuple[str, str],
+    claimed: float,
+    tolerance: float,
+    loose: float,
 ) -> Verdict:
-    """Judge the power of a with which the difference of the laws, (aU')² on a slipping block, falls.
+    """Judge the power of a with which the difference of the results of the laws falls; say that of the forces.
 
-    slips : a and speed, see `_fastest_slips`; names : of the readings in which v is fixed, and in which av is
+    results : see `_result_differences`; slips : a and speed, see `_fastest_slips`
+    names : of the readings in which v is fixed, and in which av is
     """
-    grid, speed = slips
+    (grid, differences), (slip_a, speed) = results, slips
     least, largest = int(np.argmin(grid)), int(np.argmax(grid))
-    readings, measured, texts = {}, [], []
-    for name, product in zip(names, (grid * speed, speed), strict=True):
-        power, error = _power(grid, product**2)
-        ratio = float((product[least] / product[largest]) ** 2)
+    readings, measured, texts, forces = {}, [], [], []
+    for name, difference, product in zip(names, differences, (slip_a * speed, speed), strict=True):
+        power, error = _power(grid, difference)
         readings[name] = judge_value(min(power, claimed), claimed, tolerance, loose)
-        measured.append(Measured(f"power of a with which the difference of the laws falls {name}", power, error))
-        measured.append(Measured(f"remaining fraction of it {name}", ratio))
-        texts.append(f"to {100 * ratio:.2g} %, as a to the power {with_error(power, error)}, {name} ({readings[name]})")
+        measured.append(Measured(f"power of a with which the difference of ⟨J⟩ falls {name}", power, error))
+        texts.append(
+            f"from {100 * difference[largest]:.2g} to {100 * difference[least]:.2g} %, as a to the power "
+            f"{with_error(power, error)}, {name} ({readings[name]})"
+        )
+        power, error = _power(slip_a, product**2)
+        measured.append(Measured(f"power of a with which the difference of the forces falls {name}", power, error))
+        forces.append(f"the friction forces differ as a to the power {with_error(power, error)} {name}")
     reason = (
-        f"From a = {grid[largest]:g} down to {grid[least]:g} the difference of the laws on a slipping block falls "
-        f"{'; '.join(texts)}. With the same slip speed it would fall as a^{claimed:g}."
+        f"From a = {grid[largest]:g} down to {grid[least]:g} the difference of ⟨J⟩ between the laws, on the antiphase "
+        f"orbit, falls {'; '.join(texts)}."
     )
-    return combine_readings(readings, reason, measured)
+    return combine_readings(readings, reason, measured, forces)
 
 
 def _power(grid: np.ndarray, values: np.ndarray) -> tuple[float, float | None]:

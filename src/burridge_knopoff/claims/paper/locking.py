@@ -13,24 +13,27 @@ from burridge_knopoff.claims.claim import claim
 from burridge_knopoff.claims.conventions import combine_readings
 from burridge_knopoff.claims.evidence import MIN_VALUES, Evidence, check_covered
 from burridge_knopoff.claims.range import BELOW, POSITIVE, Range
+from burridge_knopoff.claims.statement import Case, Statement, decided
 from burridge_knopoff.claims.verdict import (
     UNDECIDED,
     Measured,
     NotTestableError,
     Share,
     Verdict,
-    at_values,
     count_share,
     describe_where,
     extremes,
     join_words,
     judge_share,
+    judge_shares,
     share_is_decided,
     worst_verdict,
 )
 from burridge_knopoff.continuation.branch_changes import Change
 from burridge_knopoff.motion.kind import CHAOS, REGULAR, MotionKind
+from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.study.formatting import format_values
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.one_frequency import has_one_frequency
 from burridge_knopoff.summaries.plateaux import plateaux
@@ -43,12 +46,18 @@ STANDARD_ERRORS = 3.0
 
 #: The two readings of «frequency locking».
 ONE_FREQUENCY, NO_MODE = "one frequency with a stable relative phase", "locking, not a normal mode"
+UNRESOLVED = "it is not known whether a perturbation of the relative phase decays"
+
+# A locked torus closes after more turns around the orbit from which it was born than a strong resonance, 1:4.
+LEAST_TURNS = 4.5
 
 TORUS = "quasiperiodic motion, or chaos too weak to be distinguished from it,"
 UNFOLLOWED = "a periodic orbit too long to be continued, or a torus near it,"
 #: What precedes chaos if frequency locking is that of a torus, and if every periodic orbit counts as locked.
 LOCKED = "a periodic orbit to which a torus has locked"
 CLOSED = "any periodic orbit"
+#: The first of these at the transition to chaos only, the onset at the smallest a.
+FIRST = f"{LOCKED}, at the first onset"
 
 
 @claim("Conclusions", "detuning", "rotation")
@@ -67,6 +76,10 @@ def branch_locked(
     2 from opposite phases, branch 1 from plus. The end blocks have one frequency there by mirror symmetry, which
     shows nothing; the mass of one of them is therefore 1 + `detuning` times as large.
 
+    Holds if the end blocks are locked at all values of a, on both branches under both laws, and loosely at nine in ten
+    of them. A perturbation of their relative phase decays if the third Lyapunov exponent is below 0 by three standard
+    errors. If it is not, the exponent is 0 if these errors are at most `motion.zero_exponent`, and otherwise unknown.
+
     Frequency locking may mean that they keep one frequency, and that a perturbation of their relative phase decays,
     which «analogous to an excitation in linear systems» allows: three blocks that oscillate freely would have three
     Lyapunov exponents of 0. Or it means locking as opposed to a normal mode, which also has one frequency: the end
@@ -84,7 +97,8 @@ def branch_locked(
     rotation = evidence.summary("rotation")
     if detuning not in rotation["detuning"].values:
         raise NotTestableError(f"rotation.nc has no motion with a detuning of {detuning:g}")
-    shares: dict[str, dict[str, Share]] = {ONE_FREQUENCY: {}, NO_MODE: {}}
+    zero = MotionSettings(**evidence.config["motion"]).scaled_to_velocity(evidence.config["v"]).zero_exponent
+    cases: dict[str, list[Case]] = {ONE_FREQUENCY: [], NO_MODE: []}
     measured, where = [], []
     for law in PAPER_LAWS:
         of_law = rotation.sel(law=law)
@@ -100,35 +114,39 @@ def branch_locked(
             grid, frequency = detuned["a"].values, detuned["detuned_frequency"].values
             third, error = (detuned[key].values[:, 2] for key in ("detuned_exponent", "detuned_exponent_error"))
             deviation = _deviation_from_modes(detuned)
-            one_frequency = has_one_frequency(frequency) & (third < -STANDARD_ERRORS * error)
+            has_one, spread = has_one_frequency(frequency), STANDARD_ERRORS * error
+            one_frequency = has_one & (third < -spread)
             is_locked = one_frequency & (deviation > mode_deviation)
-            shares[ONE_FREQUENCY][name], shares[NO_MODE][name] = count_share(one_frequency), count_share(is_locked)
+            is_known = ~has_one | one_frequency | (spread <= zero)
+            unknown = f"{UNRESOLVED} {format_values(grid, ~is_known)} ({name})"
+            of_one = Case(name, grid, one_frequency, is_known, unknown)
+            cases[ONE_FREQUENCY].append(of_one)
+            cases[NO_MODE].append(Case(name, grid, is_locked, is_known | (deviation <= mode_deviation), unknown))
             measured += [
-                Measured(f"share of a at which the end blocks keep one frequency, {name}", one_frequency.mean()),
-                Measured(f"share of a at which they are locked, {name}", is_locked.mean()),
                 Measured(
                     f"largest difference of their frequencies, {name}", np.ptp(frequency[:, [0, -1]], axis=1).max()
                 ),
                 Measured(f"largest third exponent, {name}", third.max()),
                 Measured(f"largest deviation from a mode in amplitude ratio and phase, {name}", deviation.max()),
             ]
-            where += describe_where(
-                "the end blocks do not keep one frequency with a stable relative phase", grid, ~one_frequency, name
+            where += of_one.exceptions(
+                "the end blocks do not keep one frequency with a stable relative phase", UNRESOLVED
             )
             where += describe_where("the end blocks are locked", grid, is_locked, name)
         numbers, texts = _locked_to_middle(of_law, a, law)
         measured, where = measured + numbers, where + texts
-    verdicts = {
-        reading: worst_verdict(judge_share(share, loose_share) for share in of_branch.values())
-        for reading, of_branch in shares.items()
-    }
-    kept, locked = (at_values(shares[reading], a) for reading in (ONE_FREQUENCY, NO_MODE))
+    statements = {reading: decided(Statement(evidence, of_branch, loose_share)) for reading, of_branch in cases.items()}
+    verdicts = {reading: judge_shares(statement.shares, loose_share)[0] for reading, statement in statements.items()}
+    kept, locked = (statements[reading].at(a) for reading in (ONE_FREQUENCY, NO_MODE))
+    measured += statements[ONE_FREQUENCY].measured("share of a at which the end blocks keep one frequency")
+    measured += statements[NO_MODE].measured("share of a at which they are locked")
     reason = (
         f"With {100 * detuning:g} % more mass on one of them, the end blocks keep one frequency, and a perturbation of "
         f"their relative phase decays (the third Lyapunov exponent is negative), {kept} "
         f"({verdicts[ONE_FREQUENCY]}). They are locked, their complex amplitude ratio more than "
         f"{100 * mode_deviation:g} % away from that of any normal mode, {locked} ({verdicts[NO_MODE]}). Each motion "
-        f"was followed for {rotation.attrs['detuned_transient'] + 2.0 * rotation.attrs['detuned_window']:g} time units."
+        f"was followed for {rotation.attrs['detuned_transient'] + 2.0 * rotation.attrs['detuned_window']:g} time units "
+        "or longer."
     )
     return combine_readings(verdicts, reason, measured, where)
 
@@ -169,10 +187,14 @@ def _locked_to_middle(rotation: xarray.Dataset, a: Range, law: str) -> tuple[lis
 def locking_precedes_chaos(evidence: Evidence, *, a: Range = POSITIVE, loose_share: LooseShare = 0.9) -> Verdict:
     """Frequency locking precedes the transition to chaos.
 
+    Holds if it precedes the onset of chaos, the first or every one, under both laws, and loosely nine in ten of them.
+    An onset is a place where a branch of attractors becomes chaotic as a grows.
+
     Frequency locking is that of a torus: the branch moves on a torus, locks to a periodic orbit, and then becomes
-    chaotic. In a weaker sense every periodic orbit is locked, since its blocks stop in rational ratios; this is
-    also true of an orbit that was never on a torus, for example before a cascade of period doublings, and only a
-    torus that breaks up into chaos contradicts it.
+    chaotic. The transition may be the onset at the smallest a, as in «near a = 0.1 we observe a transition», or each
+    onset. In a weaker sense every periodic orbit is locked, since its blocks stop in rational ratios; this is also true
+    of an orbit that was never on a torus, for example before a cascade of period doublings, and only a torus that
+    breaks up into chaos contradicts it.
 
     The motion before chaos is that of the branch at the next smaller value of a. An onset does not count if the
     chaos existed before, as a transient or on an attractor on which the branch ends; neither does a bifurcation
@@ -185,8 +207,8 @@ def locking_precedes_chaos(evidence: Evidence, *, a: Range = POSITIVE, loose_sha
     bifurcations = evidence.summary("bifurcations")
     laws = bifurcations.attrs["laws"].split()
     before, after, kinds = (bifurcations[key].values for key in ("motion_before", "motion_after", "kind"))
-    readings: dict[str, list[str]] = {LOCKED: [], CLOSED: []}
-    texts: dict[str, list[str]] = {LOCKED: [], CLOSED: []}
+    readings: dict[str, list[str]] = {FIRST: [], LOCKED: [], CLOSED: []}
+    texts: dict[str, list[str]] = {reading: [] for reading in readings}
     measured, remarks = [], []
     for name in PAPER_LAWS:
         if name not in laws:
@@ -211,11 +233,14 @@ def locking_precedes_chaos(evidence: Evidence, *, a: Range = POSITIVE, loose_sha
             at: _was_torus(of_law, refined, int(bifurcations["from_branch"].values[k]), at[0])
             for at, k in places.items()
         }
+        earlier = unknown & (bifurcations["grid_low"].values < min(places)[0])
         for reading in readings:
-            possible = [at for at in places if precursors[at] != TORUS and (reading == CLOSED or on_torus[at])]
+            judged = [min(places)] if reading == FIRST else [*places]
+            possible = [at for at in judged if precursors[at] != TORUS and (reading == CLOSED or on_torus[at])]
             certain = [at for at in possible if not precursors[at]]
-            is_decided = share_is_decided(len(certain), len(possible), len(places), loose_share)
-            share = Share(len(certain), len(places))
+            is_decided = share_is_decided(len(certain), len(possible), len(judged), loose_share)
+            is_decided &= reading != FIRST or not earlier.any()
+            share = Share(len(certain), len(judged))
             readings[reading].append(judge_share(share, loose_share) if is_decided else UNDECIDED)
             texts[reading].append(f"{share.hits} of {share.count} ({name})")
             measured.append(Measured(f"share of the onsets of chaos that {reading} precedes, {name}", share.value))
@@ -251,22 +276,52 @@ def _possible_precursor(before: int, bifurcation: int) -> str:
 def _was_torus(bifurcations: xarray.Dataset, refined: xarray.Dataset, branch: int, low: float) -> bool:
     """Return whether a branch moves on a torus at some a up to `low`, and from there to `low` on periodic orbits.
 
-    Where it begins, it is followed to the branch that leads to it.
+    Where it begins, it is followed to the branch that leads to it. A torus that exists only between two values of a at
+    which the branch is seen may have a number of its own. It may be locked wherever it is seen (`_torus_births`).
 
     bifurcations, refined : of one law. Between values of the grid a branch may not have been searched for.
     """
-    a, in_grid, branches, kind = (refined[name].values for name in ("a", "in_grid", "branch", "kind"))
+    a, branches, kind, period = (refined[name].values for name in ("a", "branch", "kind", "period"))
     changes = {name: bifurcations[name].values for name in ("change", "from_branch", "to_branch", "grid_high")}
+    births = _torus_births(bifurcations)
+    passed: list[int] = []
     for row in np.flatnonzero(a <= low)[::-1]:
-        kinds = {*kind[row][branches[row] == branch].tolist()}
-        if not kinds and in_grid[row] == 1:
+        is_branch = branches[row] == branch
+        if not is_branch.any():
+            if refined["in_grid"].values[row] == 1:
+                return False
+            passed.append(row)
+            continue
+        if np.isin(kind[row][is_branch], (*CHAOS, MotionKind.TRANSIENT_CHAOS)).any():
             return False
-        if not kinds.isdisjoint((*CHAOS, MotionKind.TRANSIENT_CHAOS)):
-            return False
-        if MotionKind.QUASIPERIODIC in kinds:
-            return True
+        of_branch = births["branch"] == branch
+        is_between = ~np.isin(branches[passed], np.delete(branches, passed, axis=0))
+        for motion, time, is_birth in (
+            (kind[row][is_branch], period[row][is_branch], (births["low"] <= a[row]) & (a[row] <= births["high"])),
+            (kind[passed][is_between], period[passed][is_between], births["low"] == a[row]),
+        ):
+            shortest = LEAST_TURNS * births["period"][of_branch & is_birth].min(initial=np.inf)
+            if ((motion == MotionKind.QUASIPERIODIC) | (time > shortest)).any():
+                return True
+        passed = []
         branch = _predecessor(changes, branch, a[row])
     return False
+
+
+def _torus_births(bifurcations: xarray.Dataset) -> dict[str, np.ndarray]:
+    """Return where an orbit loses stability to a torus: its branch, its period, and the values of a on both sides.
+
+    A pair of complex multipliers leaves the unit circle there, at a Neimark–Sacker bifurcation or by a jump at a
+    grazing. An attractor on the other side that closes only after several periods of the orbit is the torus, locked.
+    """
+    imaginary, modulus = (
+        function(bifurcations["multiplier_beyond"].values)
+        for function in (lambda pair: pair[:, 1], lambda pair: np.hypot(pair[:, 0], pair[:, 1]))
+    )
+    is_birth = (bifurcations["kind"].values == BifurcationKind.NEIMARK_SACKER) | ((imaginary > 0.0) & (modulus > 1.0))
+    is_birth &= bifurcations["turns"].values == 0
+    names = {"branch": "from_branch", "period": "period", "low": "grid_low", "high": "grid_high"}
+    return {name: bifurcations[column].values[is_birth] for name, column in names.items()}
 
 
 def _predecessor(changes: Mapping[str, np.ndarray], branch: int, a: float) -> int:

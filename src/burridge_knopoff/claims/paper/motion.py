@@ -6,7 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.choice import ANTIPHASE, Correlation, LooseShare, LooseTolerance, Tolerance
+from burridge_knopoff.claims.choice import (
+    ANTIPHASE,
+    LOOSE_ANTIPHASE,
+    Correlation,
+    LooseCorrelation,
+    LooseShare,
+    LooseTolerance,
+    Tolerance,
+)
 from burridge_knopoff.claims.claim import claim
 from burridge_knopoff.claims.conventions import combine_readings, judge_conventions
 from burridge_knopoff.claims.evidence import Evidence, finite
@@ -25,7 +33,6 @@ from burridge_knopoff.claims.verdict import (
     describe_where,
     extremes,
     format_shares,
-    judge_shares,
     judge_value,
     judge_worst_share,
     worst_verdict,
@@ -54,7 +61,7 @@ def velocities_touch_zero(
 ) -> Verdict:
     """At a = 0.08 the velocity of each of the three blocks touches zero, from minus and from plus.
 
-    Each block stops repeatedly.
+    Holds if each block stops repeatedly in each of these runs.
     """
     verdicts, measured, never = [], [], []
     for state in initial:
@@ -75,13 +82,14 @@ def velocities_touch_zero(
     reason = f"At a = {at:g} all three blocks stop repeatedly in {right} of {len(verdicts)} runs."
 
     def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
-        shares = {
-            f"{law}, {state}": Share(int((rate[0] > 0.0).all()), 1)
+        stopping = [
+            bool((rate[0] > 0.0).all())
             for state in initial
             for law in laws
             if (rate := reached_attractor(attractors, at, state, law, "stop_rate"))
-        }
-        return judge_shares(shares, 1.0)
+        ]
+        verdict = HOLDS if all(stopping) else FAILS
+        return verdict if stopping else "", f"all three blocks stop on {sum(stopping)} of {len(stopping)} attractors"
 
     return judge_conventions(evidence, worst_verdict(verdicts), reason, measured, never, judge_attractors)
 
@@ -90,7 +98,8 @@ def velocities_touch_zero(
 def not_differentiable_at_events(evidence: Evidence, *, a: Range = POSITIVE, loose_share: LooseShare = 0.9) -> Verdict:
     """The equations of motion are not differentiable at the times when a block starts to move or stops.
 
-    Where a block stops, U'' jumps. Where it starts, U'' is continuous and its derivative jumps.
+    Holds if U'' jumps at every stop, and its derivative at every start, in the runs at all values of a; and loosely at
+    nine in ten of them. U'' is continuous at a start.
     """
 
     def truth(runs: Runs) -> Truth:
@@ -118,11 +127,13 @@ def not_differentiable_at_events(evidence: Evidence, *, a: Range = POSITIVE, loo
 def sticks_unavoidable(evidence: Evidence, *, a: Range = POSITIVE, loose_share: LooseShare = 0.9) -> Verdict:
     """Some sticks are unavoidable, whatever the motion.
 
+    Holds if all eigenvalues of uniform sliding have positive real parts at every value of a, and some block stops on
+    every known attractor, under both laws; and loosely at nine in ten of each.
+
     While all blocks slip, the energy ½|U' − v|² + ½ x·Kx of their motion about uniform sliding grows, unless they
     slide uniformly, if friction falls with velocity. Oscillations that grow without bound bring some velocity to 0
     (docs/claims.md). Uniform sliding itself is unstable if its eigenvalues have positive real parts, which are half
-    of −F'(v) each; otherwise motion without sticks attracts. As a check, some block has to stop in each known
-    attractor.
+    of −F'(v) each; otherwise motion without sticks attracts.
     """
     evidence.check_blocks()
     equilibrium = evidence.choose(evidence.summary("equilibrium"), a)
@@ -170,17 +181,19 @@ def antiphase(
     law: str = "linearized",
     at: float = 0.08,
     correlation: Correlation = ANTIPHASE,
+    loose: LooseCorrelation = LOOSE_ANTIPHASE,
 ) -> Verdict:
     """From plus the velocities of the end blocks are in antiphase at a = 0.08.
 
-    Antiphase is a correlation of at most `correlation`: it is 0 for uncorrelated velocities and −1 for sines in
-    antiphase. The claim holds loosely if the correlation is negative.
+    Holds if the correlation of the two velocities is at most {correlation:g}, and loosely («some kind of antiphase») if
+    it is at most {loose:g}, which is that of two sines 60° away from antiphase. It is 0 for uncorrelated velocities
+    and −1 for sines in antiphase.
     """
     runs = evidence.state_summary("stick_slip", initial).sel(law=law)
     value = evidence.at(runs, at)["velocity_correlation"].item()
     if not np.isfinite(value):
         raise NotTestableError(f"the correlation of the end blocks from {initial} at a = {at:g} is not known")
-    verdict = _judge_antiphase(value, correlation)
+    verdict = _judge_antiphase(value, correlation, loose)
     everywhere = runs["velocity_correlation"].values
     negative = np.isfinite(everywhere) & (everywhere < 0.0)
     reason = f"The correlation of U₁' and U₃' from {initial} at a = {at:g} ({law}) is {with_error(round(value, 2))}."
@@ -190,33 +203,39 @@ def antiphase(
         reached = reached_attractor(attractors, at, initial, law, "velocity_correlation")
         if not reached or not np.isfinite(reached[0]):
             return "", ""
-        return _judge_antiphase(reached[0], correlation), f"correlation {with_error(round(float(reached[0]), 2))}"
+        value = float(reached[0])
+        return _judge_antiphase(value, correlation, loose), f"correlation {with_error(round(value, 2))}"
 
     measured = [Measured("correlation of U₁' and U₃'", value)]
     return judge_conventions(evidence, verdict, reason, measured, exceptions, judge_attractors)
 
 
-def _judge_antiphase(value: float, correlation: float) -> str:
-    return HOLDS if value <= correlation else LOOSELY if value < 0.0 else FAILS
+def _judge_antiphase(value: float, correlation: float, loose: float) -> str:
+    return HOLDS if value <= correlation else LOOSELY if value <= loose else FAILS
 
 
 @claim("Conclusions", "stick_slip", "stick_slip", "agreement")
 def antiphase_persists(
-    evidence: Evidence, *, initial: str = "plus", a: Range = BELOW, loose_share: LooseShare = 0.9
+    evidence: Evidence,
+    *,
+    initial: str = "plus",
+    a: Range = BELOW,
+    correlation: LooseCorrelation = LOOSE_ANTIPHASE,
+    loose_share: LooseShare = 0.9,
 ) -> Verdict:
     """If the end blocks are in antiphase, from plus, this persists in time for a < 0.1.
 
-    Antiphase means here a negative correlation of their velocities in the window, as it does loosely in `antiphase`. It
-    persists if the run is on its
-    attractor, by `settled` of agreement.nc: a transient would be followed by another motion.
+    Holds if the run is on its attractor, by `settled` of agreement.nc, at every value of a at which the correlation of
+    the velocities in the window is at most {correlation:g}, and loosely at nine in ten of them. A transient would be
+    followed by another motion.
     """
 
     def truth(runs: Runs) -> Truth:
-        correlation, settled = (
+        of_run, settled = (
             runs.of(*variable).sel(initial=initial)
             for variable in (("stick_slip", "velocity_correlation"), ("agreement", "settled"))
         )
-        opposed = correlation < 0.0
+        opposed = of_run <= correlation
         for law in opposed["law"][~opposed.any("a")].values:
             raise NotTestableError(f"no run from {initial} under the {law} law is in antiphase with {a}")
         return Truth(settled == 1, settled >= 0, opposed)
@@ -246,8 +265,8 @@ def half_frequency(
 ) -> Verdict:
     """From plus the end blocks oscillate at about half the frequency of the middle block, at a = 0.08.
 
-    «More or less» allows a tenth, like «near» a = 0.1, and loosely twice that: beyond, a ratio is nearer to 2/3 or
-    1/3. Both the peaks of the velocity spectra and the numbers of stops have to agree with the claim.
+    Holds if the ratio is within {tolerance:g} of {claimed:g}, a tenth of it, and loosely within {loose:g}, for both end
+    blocks, by the peaks of the velocity spectra and by the numbers of stops. Beyond, it is nearer to 2/3 or 1/3.
     """
     run = evidence.at(evidence.state_summary("stick_slip", initial).sel(law=law), at)
     frequency, error, stops = (
@@ -299,13 +318,15 @@ def cycle_time(
 ) -> Verdict:
     """One stick-slip cycle takes about two or three units of time, under both laws.
 
+    Holds if the median over a lies between {low:g} and {high:g} or at most {tolerance:g} outside, for each block, law
+    and state, and loosely if it is at most {loose:g} outside.
+
     A cycle may be read as the time between two stops of one block; as the time between a stop of any block and the
     next stop of any block, which is the inverse of the total rate of stops; or as the time between two stops of the
     middle block in the figure of the last state, where it is the shortest cycle to be seen. Medians over a are
     judged.
 
     shown : the a of the paper's figures of single runs
-    tolerance, loose : how far outside it may lie for the claim to hold, and to hold loosely
     """
     middle = f"between successive stops of the middle block, from {initial[-1]} at a = {shown:g}"
     readings: dict[str, dict[str, np.ndarray]] = {ONE_BLOCK: {}, ANY_BLOCK: {}, middle: {}}

@@ -39,7 +39,8 @@ def minus_one_section_point(
 ) -> Verdict:
     """From minus the section W = 0 is one point for a < 0.1, a continuous line in the bifurcation diagram.
 
-    Periodic motion whose section points do not repeat yet has not settled and is left out.
+    Holds if it is one point at all values of a, and loosely at nine in ten of them. Periodic motion whose section
+    points do not repeat yet has not settled and is left out.
     """
 
     def truth(runs: Runs) -> Truth:
@@ -71,10 +72,10 @@ def plus_cloud(
 ) -> Verdict:
     """From plus the section is a cloud of points at lower velocities for a < 0.1.
 
-    initial : the state with one point, the state with the cloud
-    points : a section with more points than this is a cloud; an empty section is not
+    Holds if the section has more than {points} points, and their mean W' is below that of minus, at all values of a;
+    and loosely at nine in ten of them.
 
-    A cloud is lower if its mean W' is below that of the other state.
+    initial : the state with one point, the state with the cloud
     """
     first, second = initial
 
@@ -113,10 +114,8 @@ def plus_not_periodic(
 ) -> Verdict:
     """From plus the cloud of section points indicates quasiperiodic or chaotic motion for a < 0.1.
 
-    The share of the values of a at which there is a cloud. Motion that repeats within `motion.longest_period` is
-    periodic.
-
-    points : a section with more points than this is a cloud
+    Holds if the motion is not periodic at all values of a at which the section has more than {points} points, and
+    loosely at nine in ten of them. Motion that repeats within `motion.longest_period` is periodic.
     """
 
     def truth(motion: Runs | Reached) -> Truth:
@@ -156,8 +155,10 @@ def plus_line_disappears(
 ) -> Verdict:
     """From plus the line of section points that minus has disappears for a < 0.1.
 
+    Holds if no W' of a section point from plus is within a fraction of {near:g} of that of minus at all values of a,
+    and loosely at nine in ten of them.
+
     initial : the state with the line, the state that is to lack it
-    near : a point is on the line if its W' differs from that of the other state at this a by at most this fraction
     """
     first, second = initial
     _both_sections(evidence, initial, law, a)

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from burridge_knopoff.claims.choice import LooseShare, LooseTolerance, Much, Relative
 from burridge_knopoff.claims.claim import claim
-from burridge_knopoff.claims.conventions import judge_conventions
+from burridge_knopoff.claims.conventions import combine_readings, judge_conventions
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.outcomes import Reached, Runs
-from burridge_knopoff.claims.range import BELOW, Range
+from burridge_knopoff.claims.range import ABOVE, BELOW, Range
 from burridge_knopoff.claims.statement import Case, Truth, for_all
 from burridge_knopoff.claims.verdict import (
+    CONVENTION,
     FAILS,
     HOLDS,
     LOOSELY,
@@ -25,6 +27,7 @@ from burridge_knopoff.claims.verdict import (
     count_share,
     judge_shares,
     judge_worst_share,
+    worst_verdict,
 )
 from burridge_knopoff.motion.kind import MotionKind, is_same_result
 from burridge_knopoff.running.status import Status
@@ -45,20 +48,23 @@ def solutions_agree(
     *,
     initial: tuple[str, ...] = ("minus", "plus"),
     a: Range = BELOW,
+    above: Range = ABOVE,
     relative: Relative = 0.001,
     loose_share: LooseShare = 0.9,
 ) -> Verdict:
     """The results are the same for the linearized map, the linearized numerical and the nonlinear numerical
     solution.
 
-    The laws are compared for a < 0.1: above, the paper only says that the motion becomes chaotic. They agree at an
-    a if both lead to synchrony, both to other regular motion, or both to chaos, which are the paper's results.
-
-    Solvers of one law agree at a point, a state and an a at which all of them were tried, if their ⟨J⟩ differs from
-    that of the study's solver by no more than the fraction `relative`, three standard errors, or the threshold of
+    Holds if the solvers of each law agree at all points, and the laws at all values of a from each state; and loosely
+    at nine in ten of each. The laws agree at an a if both lead to synchrony, both to other regular motion, or both to
+    chaos. Solvers agree at a point, a state and an a at which all of them were tried, if their ⟨J⟩ differs from that of
+    the study's solver by no more than a fraction of {relative:g}, three standard errors, or the threshold of
     synchronization.
 
-    a : range in which the laws are to agree; solvers are compared wherever they were tried
+    «These results» are those for a < 0.1, the range to which the rest of the paper limits the linearization, or also
+    the chaos for a > 0.1, which the abstract names in the sentence before.
+
+    a, above : ranges in which the laws are to agree; solvers are compared wherever they were tried
     """
     if (tried := int(a.choose(evidence.summary("solvers")["a"].values).sum())) < LEAST_TRIED:
         raise NotTestableError(
@@ -80,16 +86,26 @@ def solutions_agree(
             return "", ""
         return judge_shares({**solvers, **_of_laws(cases)}, loose_share)
 
-    laws = for_all(evidence, initial, a, loose_share, same_result, "the kind of motion from {initial} is undetermined")
+    unknown = "the kind of motion from {initial} is undetermined {where}"
+    laws = for_all(evidence, initial, a, loose_share, same_result, unknown)
     differences += laws.exceptions("the laws differ")
     shares = {**solvers, **_of_laws(laws.cases)}
     verdict = judge_worst_share(shares, loose_share)
+    chaos = for_all(evidence, initial, above, loose_share, same_result, unknown)
+    of_chaos = judge_shares(chaos.shares, loose_share)[0]
+    numbers = [Measured(f"share with agreement of the {name}", share.value) for name, share in shares.items()]
+    numbers += chaos.measured(f"share of a with the same result, {above}")
+    below = judge_conventions(evidence, verdict, "", [*numbers, *measured], differences, judge_attractors)
     reason = (
         f"The solvers of each law agree on ⟨J⟩ at {sum(solved)} of {len(solved)} points (initial state, a), and the "
-        f"laws have the same result (synchrony, other regular motion or chaos) {laws.at(a)}."
+        f"laws have the same result (synchrony, other regular motion or chaos) {laws.at(a)} ({below.verdict}), and "
+        f"{chaos.at(above)} ({of_chaos})."
     )
-    numbers = [Measured(f"share with agreement of the {name}", share.value) for name, share in shares.items()]
-    return judge_conventions(evidence, verdict, reason, [*numbers, *measured], differences, judge_attractors)
+    if below.verdict == CONVENTION:
+        return replace(below, reason=reason)
+    readings = {f"for {a}": below.verdict, f"for {above} as well": worst_verdict([below.verdict, of_chaos])}
+    changes = [*filter(None, [below.changes]), *chaos.exceptions("the laws differ")]
+    return combine_readings(readings, reason, below.measured, changes)
 
 
 def _of_laws(cases: Sequence[Case]) -> dict[str, Share]:
@@ -137,13 +153,14 @@ def map_is_cheaper(
 ) -> Verdict:
     """The map takes far less computing than stepping the differential equations.
 
-    The steps per unit time of the paper's own time stepping, in units of those of the map. Unlike times, steps do not
-    depend on the machine. A step of the map is a solution between two events, or part of one; it takes as long as a
-    few Runge-Kutta steps. The study's other solvers, Runge-Kutta with a larger step and Taylor series, are listed but
-    do not decide: the paper does not speak of them.
+    Holds if the paper's own time stepping takes at least {much:g} times as many steps per unit time as the map, and
+    loosely if it takes {loose:g} times as many.
+
+    Unlike times, steps do not depend on the machine. A step of the map is a solution between two events, or part of
+    one; it takes as long as a few Runge-Kutta steps. The study's other solvers, Runge-Kutta with a larger step and
+    Taylor series, are listed but do not decide: the paper does not speak of them.
 
     steps : the paper's time steps per unit time
-    much, loose : ratio above which the claim holds, and above which it holds loosely
     """
     evidence.check_blocks()
     runs = evidence.summary("solvers").sel(law="linearized")

@@ -17,7 +17,6 @@ from burridge_knopoff.claims.statement import Case, Truth, for_all
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
-    LOOSELY,
     UNDECIDED,
     Measured,
     NotTestableError,
@@ -154,6 +153,9 @@ def upper_edge(
 ) -> Verdict:
     """From minus, there is synchrony up to a = 0.08.
 
+    Holds if synchrony ends within {tolerance:g} of {claimed:g} under both laws, and loosely within {loose:g}. An end
+    that is known to lie between two values of a is undecided unless the verdict is the same for all between them.
+
     "The synchronization appears for the parameter a between 0.005 and 0.08": only there, or at least there.
     """
     return edge_of_synchrony(evidence, initial, claimed, tolerance, loose, a, "upper")
@@ -170,6 +172,9 @@ def lower_edge(
     a: Range = BELOW,
 ) -> Verdict:
     """From minus, synchrony appears from a = 0.005 on.
+
+    Holds if synchrony begins within {tolerance:g} of {claimed:g} under both laws, and loosely within {loose:g}. An end
+    that is known to lie between two values of a is undecided unless the verdict is the same for all between them.
 
     The lower end of the range in `upper_edge`.
     """
@@ -246,8 +251,8 @@ def plus_mean_distance(
 def plus_stationary(evidence: Evidence, *, initial: str = "plus", law: str = "linearized", at: float = 0.08) -> Verdict:
     """From plus, J displays stationary fluctuations at a = 0.08.
 
-    On an attractor all means are stationary: J fluctuates stationarily if the run is on its attractor and this is
-    not synchronized. ⟨J⟩ has the error of its batch means.
+    Holds if the run is on its attractor, where all means are stationary, and this is not synchronized. ⟨J⟩ has the
+    error of its batch means.
     """
     run = evidence.at(evidence.state_summary("mean_distance", initial), at).sel(law=law)
     mean, error, synchronized = (run[name].item() for name in ("mean_distance", "mean_distance_error", "synchronized"))
@@ -279,15 +284,11 @@ def minus_distance_vanishes(
     at: float = 0.08,
     by: float = 4000.0,
     level: Level = 1e-06,
-    loose: LooseTolerance = 1.25,
 ) -> Verdict:
     """From minus, J has gone to zero by τ = 4000 at a = 0.08.
 
-    Zero means below the threshold of synchrony, for good. The claim holds loosely if it takes up to a quarter
-    longer, `loose` times as long.
-
-    J falls exponentially and is never 0. A level of rounding is not judged: when J is below it depends on the
-    arithmetic.
+    Holds if J stays below {level:g}, the threshold of synchrony, from τ = {by:g} or earlier on. J falls exponentially
+    and is never 0. A level of rounding is not judged: when J is below it depends on the arithmetic.
     """
     runs = evidence.at(evidence.state_summary("mean_distance", initial), at).sel(law=law)
     if level not in runs["level"].values:
@@ -304,7 +305,7 @@ def minus_distance_vanishes(
         f"{height:g} from τ = {time:.2f} on" for height, time in times.items() if height <= level and np.isfinite(time)
     ]
     text = f"stays below {join_words(reached)}" if np.isfinite(settled) else f"does not stay below {level:g}"
-    verdict = HOLDS if settled <= by else LOOSELY if settled <= loose * by else FAILS
+    verdict = HOLDS if settled <= by else FAILS
     expected, period = _transverse_rate(evidence, law, at)
     rate, error = _decay_rate(runs, level, 2.0 * period)
     decay = ""

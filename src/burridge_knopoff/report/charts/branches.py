@@ -82,7 +82,7 @@ def run_legend(states: list[str], critical: bool) -> list[Entry]:
     """Return the entries of the runs, of the run that is picked, and of a_c if there is one."""
     runs = [Entry(f"run from {name}", INK["text"], _run_shape(n)) for n, name in enumerate(states)]
     picked = Entry("the run shown under One run", INK["focus"], "circle-open")
-    return [*runs, picked, *([Entry("loss of synchrony, a_c", INK["muted"], "dot")] if critical else [])]
+    return [*runs, picked, *([Entry("a_c of the synchronized orbit", INK["muted"], "dot")] if critical else [])]
 
 
 def _run_shape(number: int) -> str:
@@ -94,8 +94,8 @@ def distance(
 ) -> go.Figure:
     """Return ⟨J⟩ of the runs of one law, with three standard errors, over that of its attractors.
 
-    kind : of the motion of each run; top : end of the axis of ⟨J⟩; critical : a_c of the synchronized orbit, NaN if
-        there is none; attractors : as of `Branches.marks`
+    kind : of the motion of each run; top : end of the axis of ⟨J⟩; critical : a_c at which the stability of the
+        synchronized orbit changes, NaN if there is none; attractors : as of `Branches.marks`
 
     The page puts the run that is picked into the last trace.
     """

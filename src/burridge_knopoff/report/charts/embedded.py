@@ -13,6 +13,7 @@ from burridge_knopoff.figures.lyapunov import frame
 from burridge_knopoff.report.charts import branches, exponents, grid, sections
 from burridge_knopoff.report.charts.look import Packer
 from burridge_knopoff.study.study import Study
+from burridge_knopoff.summaries.orbit_flags import stability_edge
 
 
 @dataclass(frozen=True)
@@ -45,11 +46,11 @@ def charts(study: Study, summaries: Mapping[str, xarray.Dataset]) -> Charts:
     legends["branches"] = [group.legend() for group in groups]
     marks = [group.marks() for group in groups] or [[]] * len(laws)
     top = branches.top_distance(runs, attractors)
-    critical = summaries["orbits"]["critical_a"].sel(law=list(laws)).values.tolist()
+    critical = [stability_edge(summaries["orbits"].sel(law=law)) for law in laws]
     legends["runs"] = branches.run_legend(list(states), bool(np.isfinite(critical).any()))
     packed["distance"] = [
-        pack(branches.distance(runs.sel(law=law), kind.sel(law=law), top, *of_law))
-        for law, *of_law in zip(laws, critical, marks, strict=True)
+        pack(branches.distance(runs.sel(law=law), kind.sel(law=law), top, edge, traces))
+        for law, edge, traces in zip(laws, critical, marks, strict=True)
     ]
     a = runs["a"].values
     edges, counts = sections.section_counts(summaries["bifurcation_diagram"])
