@@ -59,9 +59,9 @@ def by_solver(rounds: int) -> None:
         duration = TRANSIENT + window
 
         def contestant(law: str, solver: str, blocks: int = blocks, window: float = window):
-            initial = near_sliding(blocks, law_of(law, A))
+            initial = near_sliding(blocks, law_of(law, a=A))
             settings = {"transient": TRANSIENT, "window": window, "events": "all", "lyapunov_exponents": 0}
-            return lambda: simulate(law, A, initial, v=V, solver=solver, **settings)
+            return lambda: simulate(Model(law, a=A, v=V), initial, solver=solver, **settings)
 
         runs = {name: contestant(*variant) for name, variant in VARIANTS.items()}
         results = {name: run() for name, run in runs.items()}
@@ -102,8 +102,8 @@ CASES = (
 
 def model_of(blocks: int, v: float) -> Model:
     """Return a chain of Carlson and Langer."""
-    law = law_of("carlson_langer", LARGE_A, {"sigma": SIGMA})
-    return Model(Chain(blocks, coupling=COUPLING, pulling=1.0), law, v)
+    law = law_of("carlson_langer", a=LARGE_A, sigma=SIGMA)
+    return Model(law, blocks=blocks, coupling=COUPLING, pulling=1.0, v=v)
 
 
 def settled(model: Model) -> ChainState:

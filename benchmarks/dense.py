@@ -24,16 +24,16 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import numpy as np
 
-from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff import ChainState, Model, law_of
 from burridge_knopoff.running.runner import Runner
 
 SIDES = (6, 10, 16, 24)
 SLIPPING = (1, 2, 8)
-LAW = law_of("carlson_langer", 0.5, {"sigma": 0.2})
+LAW = law_of("carlson_langer", a=0.5, sigma=0.2)
 V = 0.01
 #: Neighbours on each side in a ring, on both sides of the number from which on forces follow by increments.
 NEIGHBOURS = (1, 4, 5, 10, 30)
-RING, RING_LAW, RING_END = 1000, law_of("carlson_langer", 2.0, {"sigma": 0.2}), 1.0
+RING, RING_LAW, RING_END = 1000, law_of("carlson_langer", a=2.0, sigma=0.2), 1.0
 
 
 def lattice(side: int, folder: str) -> Model:
@@ -43,7 +43,7 @@ def lattice(side: int, folder: str) -> Model:
         first, second = np.triu_indices(side**2, 1)
         distance = np.hypot(first % side - second % side, first // side - second // side)
         np.savetxt(path, np.stack([first + 1, second + 1, 9.0 / distance**3], axis=1), fmt=["%d", "%d", "%.17g"])
-    return Model(Chain(springs=str(path), pulling=1.0), LAW, V)
+    return Model(LAW, springs=str(path), pulling=1.0, v=V)
 
 
 def event_time(model: Model, slipping: int) -> float:
@@ -69,7 +69,7 @@ def event_time(model: Model, slipping: int) -> float:
 def ring_time(neighbours: int) -> float:
     """Return the CPU time per start or stop in a ring with springs to so many blocks on each side, in µs."""
     springs = {"distance": "3/r", "cut_off": neighbours}
-    model = Model(Chain(RING, ends="ring", springs=springs, pulling=1.0), RING_LAW, V)
+    model = Model(RING_LAW, blocks=RING, ends="ring", springs=springs, pulling=1.0, v=V)
     position = np.random.default_rng(1).uniform(-0.9, -0.7, RING) - model.sliding_offset
     runner = Runner(model)
     runner.begin(ChainState(position, np.zeros(RING), np.ones(RING, dtype=bool)))

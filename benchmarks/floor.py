@@ -30,7 +30,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import numpy as np
 from measure import least, print_table
 
-from burridge_knopoff import Chain, Model, Settings, Trajectory, law_of, simulate
+from burridge_knopoff import Model, Settings, Trajectory, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.runner import Runner
@@ -111,7 +111,7 @@ def agreement(floor: FloorRun, ours: Trajectory) -> float:
 
 def compare(floor: Floor, law: str, state: str, turns: int) -> list[list[str]]:
     """Return the rows of one law and initial state."""
-    model = Model(Chain(3), law_of(law, A))
+    model = Model(law, a=A)
     initial, start = PAPER_STATES[state], model.begin(PAPER_STATES[state])
     recorded = Settings(events="all", lyapunov_exponents=0, transient=TRANSIENT, window=WINDOW)
     reference = simulate(model, initial=initial, settings=recorded)

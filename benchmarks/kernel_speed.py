@@ -56,7 +56,7 @@ def measured() -> dict[str, float]:
     durations = {}
     for law in LAWS:
         for initial, a in RUNS:
-            model = Model(Chain(3), law_of(law, a))
+            model = Model(law, a=a)
             name = f"{law}, {initial}, a = {a:g}"
             durations[f"{name}, bare"] = bare(model, initial)
             for solver in ("series", "map") if law == "linearized" else ("series",):
@@ -70,7 +70,7 @@ def measured() -> dict[str, float]:
                     )
     for law, blocks, a in LABELS:
         position, velocity, cloud = starts(blocks)
-        kernel, clouds = new_ensemble(Model(Chain(blocks), law_of(law, a))), Clouds([cloud], 2 * blocks, [RADIUS])
+        kernel, clouds = new_ensemble(Model(law, a=a, blocks=blocks)), Clouds([cloud], 2 * blocks, [RADIUS])
         durations[f"labels, {law}, N = {blocks}, a = {a:g}"] = least(
             lambda k=kernel, c=clouds, x=position, w=velocity: k.label(
                 x, w, np.zeros(x.shape, bool), c, [RETURNS], [0], [0], END
@@ -78,12 +78,12 @@ def measured() -> dict[str, float]:
         )
     for name, kind in BUILT_IN.items():
         law = kind(0.08)
-        for chosen, label in ((law, "built in"), (FormulaLaw(0.08, law.formula, **law.parameters), "by formula")):
-            durations[f"{name} {label}"] = bare(Model(Chain(3), chosen), "plus")
+        for chosen, label in ((law, "built in"), (FormulaLaw(law.formula, a=0.08, **law.parameters), "by formula")):
+            durations[f"{name} {label}"] = bare(Model(chosen), "plus")
     unequal = Chain(3, coupling=[1.0, 1.1], threshold=[1.0, 1.05, 1.0])
-    durations["nonlinear, unequal springs and thresholds"] = bare(Model(unequal, law_of("nonlinear", 0.08)), "plus")
-    law = law_of("carlson_langer", 5.0, {"sigma": 0.01})
-    chain = Model(Chain(BLOCKS, coupling=100.0, pulling=1.0), law, SLOW)
+    durations["nonlinear, unequal springs and thresholds"] = bare(Model("nonlinear", a=0.08, chain=unequal), "plus")
+    law = law_of("carlson_langer", a=5.0, sigma=0.01)
+    chain = Model(law, blocks=BLOCKS, coupling=100.0, pulling=1.0, v=SLOW)
     position = -0.9 + 0.0005 * np.random.default_rng(1).uniform(-1.0, 1.0, BLOCKS) - chain.sliding_offset
     solver, rest = Runner(chain), ChainState(position, np.zeros(BLOCKS), np.ones(BLOCKS, dtype=bool))
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from measure import least, print_table
 
-from burridge_knopoff import Chain, InitialState, Model, Settings, law_of
+from burridge_knopoff import InitialState, Model, Settings
 from burridge_knopoff.kernel._core import LANES
 from burridge_knopoff.running.runner import run_together
 from burridge_knopoff.running.simulation import prepare
@@ -31,7 +31,7 @@ def main() -> None:
     rows = []
     generator = np.random.default_rng(1)
     for blocks, law, a, exponents in CASES:
-        model = Model(Chain(blocks), law_of(law, a))
+        model = Model(law, a=a, blocks=blocks)
         settings = Settings(transient=2000.0, window=8000.0, lyapunov_exponents=exponents)
         states = [
             InitialState(

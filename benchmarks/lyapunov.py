@@ -14,13 +14,13 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 from chains import near_sliding
 from measure import cpu_times, print_table
 
-from burridge_knopoff import FormulaLaw, InitialState, Law, law_of, simulate
+from burridge_knopoff import FormulaLaw, InitialState, Law, Model, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 
 A = 0.08
 #: A power steepens with the speed, beyond all speeds of slips.
 POWER = "1 - a*u + 0.3*u**6"
-LAWS = (law_of("linearized", A), law_of("nonlinear", A), FormulaLaw(A, POWER))
+LAWS = (law_of("linearized", a=A), law_of("nonlinear", a=A), FormulaLaw(POWER, a=A))
 TRANSIENT, WINDOW = 3000.0, 7000.0
 LONG_CHAIN = 10
 
@@ -30,7 +30,7 @@ def compare(law: Law, initial: InitialState, window: float, counts: tuple[int, .
 
     def contestant(count: int):
         settings = {"transient": TRANSIENT, "window": window, "events": "all", "lyapunov_alignment": TRANSIENT}
-        return lambda: simulate(law, initial=initial, lyapunov_exponents=count, **settings)
+        return lambda: simulate(Model(law), initial=initial, lyapunov_exponents=count, **settings)
 
     runs = {str(count): contestant(count) for count in (0, *counts)}
     for run in runs.values():

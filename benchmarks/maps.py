@@ -18,7 +18,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 from measure import cpu_times, print_table
 
-from burridge_knopoff import Chain, Model, find_attractors, law_of, simulate, sweep
+from burridge_knopoff import Model, find_attractors, simulate, sweep
 from burridge_knopoff.attractors.labels import label_states
 from burridge_knopoff.basins.plane import pixel_centres, plane
 from burridge_knopoff.model.initial import PAPER_STATES
@@ -42,7 +42,7 @@ def full_run(model) -> None:
 
 def basins(pixels: int, cores: int) -> None:
     """Measure the map of basins and print its table."""
-    model = Model(Chain(3), law_of("linearized", A))
+    model = Model("linearized", a=A)
     attractors, _ = find_attractors(model, starts=list(PAPER_STATES.values()))
     state = PAPER_STATES["minus"]
 
@@ -62,7 +62,7 @@ def basins(pixels: int, cores: int) -> None:
         {
             "map": lambda: label(SAMPLE_PIXELS, 1),
             "bare run": lambda: full_run(model),
-            "run": lambda: simulate("linearized", A, "plus"),
+            "run": lambda: simulate(Model("linearized", a=A), "plus"),
         },
         5,
     )
@@ -97,7 +97,7 @@ def exponents() -> None:
     rows = []
     for name, values in OTHER.items():
         begin = time.process_time()
-        runs = sweep("nonlinear", PLANE_A, INITIAL, **{name: values}, **SETTINGS)
+        runs = sweep(Model("nonlinear"), INITIAL, a=PLANE_A, **{name: values}, **SETTINGS)
         seconds = time.process_time() - begin
         largest = runs["lyapunov_exponent"].values[..., 0]
         chaotic = int((largest > 2.0 * runs["lyapunov_error"].values[..., 0]).sum())

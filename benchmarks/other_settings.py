@@ -62,7 +62,7 @@ def born_at(study: Study, attractors: xarray.Dataset) -> float:
     states = np.concatenate([periodic["position"].values - model.sliding_offset, periodic["velocity"].values], axis=1)
     orbits = [limit_cycle(model, state_of(state)) for state in states]
     orbit = next(orbit for orbit in orbits if orbit.stop_counts == STOPS)
-    bifurcations = locate_bifurcations(follow(orbit, BIRTH_RANGE, upward=False))
+    bifurcations = locate_bifurcations(follow(orbit, BIRTH_RANGE, upward=False, parameter="a"))
     return next(
         bifurcation.a
         for bifurcation in bifurcations
@@ -80,7 +80,7 @@ def main() -> None:
         ["a", f"α ({laws})", "dimension 2 − α"], [exponents(results, study, attractors, a) for a in EXPONENTS_AT]
     )
     model = study.model("linearized", PHASES_AT[0])
-    candidates = [known_of(results, attractors, model.at(a)) for a in PHASES_AT]
+    candidates = [known_of(results, attractors, model.at(a=a)) for a in PHASES_AT]
     fraction = phases.one_law(candidates, PHASES, SEARCH.label_limit)["synchronized_fraction"]
     table = 100.0 * fraction.sel(amplitude=AMPLITUDE).transpose("inner_share", "phase_difference", "a").values
     header = ["share", *(f"{angle:g}°, a = {a:g}" for angle in PHASES.phase_difference for a in PHASES_AT)]

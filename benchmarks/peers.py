@@ -24,7 +24,7 @@ from peer_heyoka_batch import HeyokaBatch
 from peer_run import HORIZON, event_time_difference
 from peer_scipy import ScipyPeer
 
-from burridge_knopoff import Chain, Model, law_of, simulate
+from burridge_knopoff import Model, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.ensemble import new_ensemble
 
@@ -44,7 +44,7 @@ def compare(law: str, state: str, rounds: int) -> list[list[str]]:
     def ours(transient: float = TRANSIENT, window: float = WINDOW, **settings):
         # The peers compute no Lyapunov exponents.
         settings = {"events": "all", "lyapunov_exponents": 0, **settings}
-        return simulate(law, A, state, v=V, transient=transient, window=window, **settings)
+        return simulate(Model(law, a=A, v=V), state, transient=transient, window=window, **settings)
 
     def paper():
         return ours(0.0, RK4_WINDOW, solver="rk4", step=RK4_STEP)
@@ -88,7 +88,7 @@ def together(law: str, rounds: int) -> list[str]:
     """Return the row of one law: an ensemble in the lanes of vectors, here and there."""
     generator = np.random.default_rng(1)
     position, velocity = generator.uniform(-0.5, 0.4, (MEMBERS, 3)), generator.uniform(0.0, 0.2, (MEMBERS, 3))
-    ensemble, heyoka = new_ensemble(Model(Chain(3), law_of(law, A), V)), HeyokaBatch(law, A, V)
+    ensemble, heyoka = new_ensemble(Model(law, a=A, v=V)), HeyokaBatch(law, A, V)
 
     def ours():
         return ensemble.run(position, velocity, np.zeros((MEMBERS, 3)), [ENSEMBLE_END])

@@ -34,8 +34,8 @@ def random_model(random: np.random.Generator) -> Model:
     else:
         blocks = int(random.choice([1, 2, 3, 5, 8, 9, 23, 24, 40, 60]))
         chain = Chain(blocks, ends="ring" if shape == 1 and blocks > 1 else "open", **springs)
-    law = law_of(str(random.choice(LAWS)), 10 ** random.uniform(-1.5, 0.5))
-    return Model(chain, law, 10 ** random.uniform(-2.5, 0), str(random.choice(CONTACTS)))
+    law = law_of(str(random.choice(LAWS)), a=10 ** random.uniform(-1.5, 0.5))
+    return Model(law, chain=chain, v=10 ** random.uniform(-2.5, 0), contact=str(random.choice(CONTACTS)))
 
 
 def random_state(model: Model, random: np.random.Generator) -> ChainState:

@@ -64,7 +64,7 @@ def resolved(study: Study, law: str, places: list[xarray.Dataset]) -> list[objec
         above, below = trajectory.lyapunov_exponent / (CERTAIN * trajectory.lyapunov_error)
         chaotic += int(above > 1.0)
         if below < -1.0 and above <= 1.0:
-            closed.append(f"{model.a:g} ({period(model, trajectory.final):.0f})")
+            closed.append(f"{model.parameter('a'):g} ({period(model, trajectory.final):.0f})")
     return [len(places), chaotic, len(places) - chaotic, len(closed), ", ".join(closed)]
 
 

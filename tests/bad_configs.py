@@ -112,7 +112,7 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "unknown_kind": (f"{GOOD}laws: {{mine: {{law: cubic}}}}\n", ["laws.mine.law: got 'cubic', expected", *LAWS]),
     "unknown_number": (
         f"{GOOD}laws: {{stribeck: {{sigm: 0.1}}}}\n",
-        ["laws.stribeck.sigm: not a parameter", "sigma | eta"],
+        ["laws.stribeck.sigm: not a parameter", "eta | sigma"],
     ),
     "no_laws": (f"{GOOD}laws: {{}}\n", ["laws: {}", "at least 1"]),
     "list_of_laws": (f"{GOOD}laws: [linearized]\n", ["laws: ['linearized']", "named entries"]),
@@ -127,8 +127,8 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
         ["laws.m: got '1 -', expected", "not a formula"],
     ),
     "formula_number": (f"{GOOD}laws: {{m: {{formula: 1}}}}\n", ["laws.m.formula: got 1, expected text"]),
-    "formula_name": (f"{GOOD}laws: {{m: {{formula: 1 - b*u}}}}\n", ["laws.m: ", "b: unknown name"]),
-    "formula_unused": (f"{GOOD}laws: {{m: {{formula: 1 - a*u, b: 2}}}}\n", ["laws.m.b: not in the formula"]),
+    "formula_name": (f"{GOOD}laws: {{m: {{formula: 1 - b*u}}}}\n", ["laws.m.b: missing"]),
+    "formula_unused": (f"{GOOD}laws: {{m: {{formula: 1 - a*u, b: 2}}}}\n", ["laws.m.b: not a parameter"]),
     "formula_law": (
         f"{GOOD}laws: {{m: {{formula: 1 - a*u, law: linearized}}}}\n",
         ["laws.m: got law and formula, expected one"],

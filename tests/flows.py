@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from burridge_knopoff import Chain, Model, Symmetry, find_periodic_orbit, law_of, multipliers
+from burridge_knopoff import Model, Symmetry, find_periodic_orbit, multipliers
 from burridge_knopoff.kernel._core import Exponents
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState
@@ -19,7 +19,7 @@ def wave(blocks, amplitude=0.1):
 
 def weakly_repelling():
     """Return a periodic orbit embedded in weak chaos, with multiplier -1.054 over a period of 75."""
-    model = Model(Chain(3), law_of("linearized", 0.1325))
+    model = Model("linearized", a=0.1325)
     position = np.array([-0.86490860, -0.66580172, -0.83500781]) - model.sliding_offset
     near = ChainState(position, np.array([0.23419014, 0.16806155, 0.21475228]), np.zeros(3, dtype=bool))
     orbit = find_periodic_orbit(model, near, 74.6583856, Symmetry.ASYMMETRIC)

@@ -18,4 +18,4 @@ QUICK = {"samples": 12, "transient": 300.0, "window": 300.0, "perturbations": 8,
 
 
 def oscillator(v):
-    return Model(CHAIN, FormulaLaw(None, FORMULA, **NUMBERS), v=v, contact="symmetric")
+    return Model(FormulaLaw(FORMULA, **NUMBERS), chain=CHAIN, v=v, contact="symmetric")

@@ -34,6 +34,10 @@ class MapModel:
     def at(self, a):
         return replace(self, a=a)
 
+    @property
+    def law(self):
+        return SimpleNamespace(parameters={"a": self.a}, names=("a",), check_complete=lambda *_: None)
+
     def parameter(self, name):
         return getattr(self, name)
 
@@ -68,7 +72,7 @@ def visit(model, start, transient, window):
 def observe(model, start, transient, window, settings, mean_distance=None, exponents=2):
     """Measure the motion of a flow whose section is the map; one of its exponents is 0."""
     x = model.orbit(start.position[0], transient + window)[int(transient) :]
-    growth = np.log(np.abs(model.slope(x, model.a)) + 1e-300)
+    growth = np.log(np.abs(model.slope(x, model.parameter("a"))) + 1e-300)
     batches = [part.mean() for part in np.array_split(growth, BATCHES)]
     exponent = np.sort([0.0, growth.mean()])[::-1]
     error = np.where(exponent == 0.0, 0.0, np.std(batches) / np.sqrt(BATCHES))
@@ -109,7 +113,7 @@ class Ensemble:
             if not len(left):
                 break
             # A trajectory of a map may diverge.
-            x[left] = np.clip(self.model.map(x[left], self.model.a), -1e9, 1e9)
+            x[left] = np.clip(self.model.map(x[left], self.model.parameter("a")), -1e9, 1e9)
             for index, (tree, radius) in enumerate(clouds.near):
                 close = tree.query(x[left, None])[0] <= radius
                 counts[index, left] = np.where(close, counts[index, left] + 1, 0)

@@ -6,7 +6,7 @@ as the velocity of every block. The phase grows at rate 1 up to 1. Then blocks s
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from types import MappingProxyType, SimpleNamespace
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -50,11 +50,17 @@ class NormalForm:
     jumps: bool = False
     a: float = CRITICAL
 
-    name, has_a = "map", True
-    parameters = MappingProxyType({})
+    name, names, missing = "map", ("a",), ()
 
     def __call__(self, speed):
         return 1.0 - 0.1 * self.jumps
+
+    @property
+    def parameters(self):
+        return {"a": self.a}
+
+    def check_complete(self, *_):
+        """All numbers have a value."""
 
     @property
     def mu(self):
@@ -73,8 +79,9 @@ class NormalForm:
 class MapModel(Model):
     """A chain whose motion is the iteration of a map."""
 
-    def __post_init__(self):
-        pass
+    def __init__(self, law, chain=TWO, v=0.1, contact="one_sided"):
+        for name, value in (("law", law), ("chain", chain), ("v", v), ("contact", contact)):
+            object.__setattr__(self, name, value)
 
 
 class MapRunner:
@@ -133,7 +140,7 @@ def orbit_at(form: NormalForm, mu: float, x, symmetry=Symmetry.ASYMMETRIC, chain
     """Return the periodic orbit near x at CRITICAL + μ that returns after a number of iterations."""
     x = np.array([*np.atleast_1d(x), *[0.0] * chain.blocks])[: chain.blocks]
     state = ChainState(x, np.full(chain.blocks, 0.5), np.zeros(chain.blocks, dtype=bool))
-    return find_periodic_orbit(MapModel(chain, form.at(CRITICAL + mu), v), state, float(time), symmetry)
+    return find_periodic_orbit(MapModel(form.at(CRITICAL + mu), chain, v), state, float(time), symmetry)
 
 
 def on_line(map: Callable, slope: Callable, **fields) -> NormalForm:
@@ -199,5 +206,5 @@ def linear(matrix: Callable, **fields) -> NormalForm:
 
 def followed(orbit: PeriodicOrbit) -> tuple[list[BranchOrbit], list[Bifurcation]]:
     """Return the branch through an orbit toward the bifurcation and as far beyond it, and what is located on it."""
-    branch = follow(orbit, (CRITICAL - 0.0101, CRITICAL + 0.0101), STEPS, upward=orbit.a < CRITICAL)
+    branch = follow(orbit, (CRITICAL - 0.0101, CRITICAL + 0.0101), STEPS, upward=orbit.a < CRITICAL, parameter="a")
     return branch, list(locate_bifurcations(branch))

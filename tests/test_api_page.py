@@ -31,7 +31,7 @@ def test_the_table_has_a_question_a_line():
     assert (
         {"simulate", "sweep", "plot", "follow", "PhysicalUnits"}
         <= named
-        <= {*burridge_knopoff.__all__, *dir(burridge_knopoff.Run), "points", "v", "Run", "Model"}
+        <= {*burridge_knopoff.__all__, *dir(burridge_knopoff.Run), "points", "v", "at", "Run", "Model"}
     )
 
 
@@ -39,9 +39,9 @@ def test_the_table_has_a_question_a_line():
 def names():
     """What the calls of the table may use: two runs, and the attractors of their model."""
     public = {name: getattr(burridge_knopoff, name) for name in burridge_knopoff.__all__}
-    run, other = (public["simulate"]("linearized", 0.08, initial) for initial in ("plus", "minus"))
+    run, other = (public["simulate"](public["Model"]("linearized", a=0.08), initial) for initial in ("plus", "minus"))
     attractors, _ = public["find_attractors"](run.model, starts=[run, other], **QUICK["find_attractors("])
-    return {**public, "run": run, "other": other, "attractors": attractors}
+    return {**public, "model": run.model, "run": run, "other": other, "attractors": attractors}
 
 
 @pytest.mark.parametrize(

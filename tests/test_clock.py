@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import (
-    Chain,
     InitialState,
     Model,
     OrbitError,
@@ -14,7 +13,6 @@ from burridge_knopoff import (
     event_exponents,
     event_multipliers,
     find_periodic_orbit,
-    law_of,
     limit_cycle,
     record_events,
     simulate,
@@ -29,8 +27,8 @@ from tests.refused import refused
 #: Times at which the clock starts; sums with them are exact for dyadic steps.
 CLOCKS = (-(2.0**20), -1.0, 2.0**13, 2.0**20)
 
-PAPER = Model(Chain(3), law_of("linearized", 0.08))
-ROUGH = Model(Chain(5, coupling=5.0, pulling=1.0), law_of("carlson_langer", 2.0), 0.125)
+PAPER = Model("linearized", a=0.08)
+ROUGH = Model("carlson_langer", a=2.0, blocks=5, coupling=5.0, pulling=1.0, v=0.125)
 
 
 def settled(model=PAPER):
@@ -124,14 +122,14 @@ def test_a_cycle_is_found_from_the_end_of_a_long_run():
     """It was once not found from τ = 8000 on, since the clock of the state was taken for elapsed time."""
     run = simulate(PAPER, initial="plus", transient=0.0, window=9000.0, lyapunov_exponents=0)
     assert limit_cycle(PAPER, run.final).period == pytest.approx(157.2451476, abs=1e-6)
-    with refused(f"a = {PAPER.a:g}", "no periodic orbit", error=OrbitError):
+    with refused(f"a = {PAPER.parameter('a'):g}", "no periodic orbit", error=OrbitError):
         limit_cycle(PAPER, run.final, window=1.0)
 
 
 @pytest.mark.parametrize("clock", [0.0, -1e6])
 def test_events_of_a_long_chain_do_not_accumulate_at_any_clock(clock):
     """From a clock below 0 all of them once counted as events of one time unit."""
-    model = Model(Chain(3), law_of("linearized", 0.2))
+    model = Model("linearized", a=0.2)
     state = replace(model.begin(InitialState("own", (-0.9, -1.0, -0.95), (0.1, 0.1, 0.1))), time=clock)
     run = simulate(model, initial=state, transient=0.0, window=5000.0, lyapunov_exponents=0)
     assert run.event_count > 3000
@@ -142,7 +140,7 @@ def test_events_of_a_long_chain_do_not_accumulate_at_any_clock(clock):
 @pytest.mark.parametrize("time", [0.0, 100.0])
 def test_a_run_that_fails_ends_at_its_last_instant(blocks, time):
     """The clock of its last state was once 0."""
-    model = Model(Chain(blocks), law_of("linearized", 3.0), contact="symmetric")
+    model = Model("linearized", a=3.0, blocks=blocks, contact="symmetric")
     at = model.begin(InitialState("rough", tuple([5.0, -5.0, 5.0] * (blocks // 3)), 0.0), "tested")
     start = replace(at, time=time)
     ended = simulate(model, initial=start, transient=10.0, window=100.0)

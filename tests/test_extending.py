@@ -40,7 +40,7 @@ chains: {two_blocks: {a: [0.02], samples: 2}}
 OBSERVABLE = """
 import numpy as np
 from pathlib import Path
-from burridge_knopoff import simulate
+from burridge_knopoff import Model, simulate
 from burridge_knopoff.cli import main
 from burridge_knopoff.figures.shortest_stick import draw
 from burridge_knopoff.study.study import all_points
@@ -66,10 +66,10 @@ def expected(run):
     assert len(sticks) > 2
     return min(sticks)
 for law in laws:
-    run = simulate(law, 0.3, "plus", **options)
+    run = simulate(Model(law, a=0.3), "plus", **options)
     assert run.shortest_stick == expected(run)
     assert summary["shortest_stick"].sel(law=law, initial="plus", a=0.3) == run.shortest_stick
-run = simulate("linearized", 0.3, "plus", **options, solver="rk4", lyapunov_exponents=0)
+run = simulate(Model("linearized", a=0.3), "plus", **options, solver="rk4", lyapunov_exponents=0)
 assert run.shortest_stick == expected(run)
 (panel,) = draw(summary).axes
 for law, line in zip(laws, panel.get_lines(), strict=True):
@@ -79,10 +79,10 @@ for law, line in zip(laws, panel.get_lines(), strict=True):
 
 BIFURCATION = """
 import numpy as np
-from burridge_knopoff import Chain, Model, follow, law_of, limit_cycle, locate_bifurcations, simulate
-model = Model(Chain(3), law_of("nonlinear", 0.13))
+from burridge_knopoff import Model, follow, limit_cycle, locate_bifurcations, simulate
+model = Model("nonlinear", a=0.13)
 run = simulate(model, initial="plus", transient=2000, window=10)
-branch = follow(limit_cycle(model, model.begin(run.initial), settling=2000.0), (0.13, 0.135))
+branch = follow(limit_cycle(model, model.begin(run.initial), settling=2000.0), (0.13, 0.135), parameter="a")
 found = [one for one in locate_bifurcations(branch) if one.kind.name == "NODE_FOCUS"]
 assert len(found) == 2
 for one in found:

@@ -11,12 +11,12 @@ pytestmark = pytest.mark.slow
 
 HEAD = """
 from concurrent.futures import ThreadPoolExecutor
-from burridge_knopoff import Chain, Model, law_of, simulate
+from burridge_knopoff import Model, simulate
 
 def slow(a):
-    return simulate("linearized", a, "minus", transient=0.0, window=1e7, events="none", sampling=1e3)
+    return simulate(Model("linearized", a=a), "minus", transient=0.0, window=1e7, events="none", sampling=1e3)
 
-model = Model(Chain(3), law_of("linearized", 0.08))
+model = Model("linearized", a=0.08)
 rest = simulate(model, initial="minus", transient=0.0, window=1.0).final
 search = {"samples": 2, "transient": 500.0, "window": 500.0}
 """
@@ -47,7 +47,7 @@ PROGRAMS = {
     "run": function("simulate", "slow(0.16)"),
     "fixed steps": function("record_events", "record_events(model, rest, 1e6, solver='euler')"),
     "exponents": function("event_exponents", "event_exponents(model, rest, 1e7, loading='steady')"),
-    "search": function("find_attractors", "find_attractors(model.at(0.16), samples=10_000)"),
+    "search": function("find_attractors", "find_attractors(model.at(a=0.16), samples=10_000)"),
     "labels": LABELS.format(cores=1),
     "labels in threads": LABELS.format(cores=3),
     "map": function("basin_map", "basin_map(model, pixels=1500, cores=2, **search)"),

@@ -14,7 +14,7 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff import simulate
+from burridge_knopoff import Model, simulate
 from burridge_knopoff.check.study import Check, Finding
 from burridge_knopoff.cli import main
 from burridge_knopoff.cli.output import print_lines
@@ -106,7 +106,9 @@ def test_no_other_function_makes_a_command(path):
 def written(tmp_path_factory):
     """A point and a summary."""
     folder = tmp_path_factory.mktemp("written")
-    write_point(simulate("linearized", 0.08, "plus", transient=10.0, window=10.0, batches=2), folder / "point.nc")
+    write_point(
+        simulate(Model("linearized", a=0.08), "plus", transient=10.0, window=10.0, batches=2), folder / "point.nc"
+    )
     write_summary(
         xr.Dataset(
             {"x": ("law", np.zeros(2), {"long_name": "x"})}, attrs={"title": "A title", "history": "snakemake"}

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from burridge_knopoff import Chain, Model, law_of, multipliers, simulate, synchronized_orbit
+from burridge_knopoff import Model, multipliers, simulate, synchronized_orbit
 from burridge_knopoff.running.settling import LEVELS
 from tests.pages import claim_sections, outputs
 
@@ -56,9 +56,9 @@ def test_chaos_first_appears_where_the_ledger_says(repository, claims):
 
 def test_the_distance_from_minus_vanishes_in_a_run(repository):
     """Below the threshold of synchrony, and below a thousandth of it as much later as the multiplier says."""
-    trajectory = simulate("linearized", 0.08, "minus", transient=3000.0, window=100.0, lyapunov_exponents=0)
+    trajectory = simulate(Model("linearized", a=0.08), "minus", transient=3000.0, window=100.0, lyapunov_exponents=0)
     settled, later = (trajectory.settling_time[LEVELS.index(level)] for level in (1e-6, 1e-9))
-    orbit = synchronized_orbit(Model(Chain(3), law_of("linearized", 0.08)))
+    orbit = synchronized_orbit(Model("linearized", a=0.08))
     rate = -np.log(abs(multipliers(orbit).symmetry_breaking[0])) / orbit.period
     # J oscillates within a period of 5.7.
     assert later - settled == pytest.approx(np.log(1e3) / rate, abs=orbit.period)

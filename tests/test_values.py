@@ -110,13 +110,13 @@ def test_no_more_is_formatted_than_is_shown(make):
 @pytest.mark.parametrize("number", ["b\nc", "b" * 10_000_000])
 def test_a_number_of_a_formula_with_an_odd_name(number):
     with refused(full_key("formula", number)):
-        FormulaLaw(0.1, "1 - a*u", **{number: 1.0})
+        FormulaLaw("1 - a*u", a=0.1, **{number: 1.0})
 
 
-@pytest.mark.parametrize("formula", ["1 - a*u\n + b", "1 - " + "a*" * 5_000_000 + "u", "1 - " + "b" * 300 + "*u"])
+@pytest.mark.parametrize("formula", ["1 - a*u\n + b", "1 - " + "a*" * 5_000_000 + "u", "1 - " + "b" * 300 + "*u)"])
 def test_an_odd_formula(formula):
     with refused("formula") as caught:
-        FormulaLaw(0.1, formula)
+        FormulaLaw(formula)
     assert str(caught.value).isprintable()
     assert len(str(caught.value)) < 400
 

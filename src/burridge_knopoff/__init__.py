@@ -2,13 +2,12 @@
 
 Import the public names from here. `help` of each name gives shapes, units, errors and an example.
 
-Model: `Model` is a `Chain` under a friction `Law`. `law_of` returns the built-in laws, and `FormulaLaw` is a law given
-by a formula. A run begins at an `InitialState`; a `ChainState` is the state at a later time. `PhysicalUnits` converts
-a physical system to the model and back.
+Model: `Model` is a friction `Law` and a `Chain` of blocks. `law_of` returns the built-in laws, and `FormulaLaw` is a
+law given by a formula. A run begins at an `InitialState`; a `ChainState` is the state at a later time. `PhysicalUnits`
+converts a physical system to the model and back.
 
-Every function of a model takes a `Model`, or a law and a with everything else by name: `chain` or `blocks`, v, contact,
-parameters of the law and of the chain. Every state may be one of the paper's names, an `InitialState`, its numbers, a
-`ChainState` or a `Run`, which stands for its final state.
+Every function takes a `Model` first, then a state or the values that vary, then settings by name. Every state may be
+one of the paper's names, an `InitialState`, its numbers, a `ChainState` or a `Run`, which stands for its final state.
 
 Runs: `simulate` returns a `Run`, whose `Trajectory` is computed with `Settings` and seen on a `Section`. `sweep`
 computes many runs over any parameters. `open_study` opens the results of a study, and `decode_flags` translates the

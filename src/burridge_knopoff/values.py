@@ -116,7 +116,8 @@ class Unchanging:
 def instance_of(value: Any, kind: type[_T], key: str) -> _T:
     """Return a value if it is an instance of a class; raises ValueError, one line, otherwise."""
     if not isinstance(value, kind):
-        raise refusal(key, value, f"{'an' if kind.__name__[0] in 'AEIOU' else 'a'} {kind.__name__}")
+        article, example = "an" if kind.__name__[0] in "AEIOU" else "a", getattr(kind, "EXAMPLE", "")
+        raise refusal(key, value, f"{article} {kind.__name__}{example and f', such as {example}'}")
     return value
 
 

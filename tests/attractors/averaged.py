@@ -12,7 +12,7 @@ from itertools import combinations
 import numpy as np
 from scipy.optimize import nnls
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Chain, Model
 from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.running.runner import Runner
@@ -70,7 +70,7 @@ def simulated_amplitudes(amplitude: np.ndarray, a: float, times: np.ndarray) -> 
     """Return amplitudes of a simulation, means over the 40 time units before each time."""
     phase = np.random.default_rng(0).uniform(0.0, 2.0 * np.pi, 3)
     position, velocity = SHAPE @ (V * amplitude / FREQUENCY * np.sin(phase)), SHAPE @ (V * amplitude * np.cos(phase))
-    runner = Runner(Model(Chain(3), law_of("linearized", a), V))
+    runner = Runner(Model("linearized", a=a, v=V))
     runner.begin(ChainState(position, V + velocity, np.zeros(3, dtype=bool)))
     amplitudes = []
     for time in times:

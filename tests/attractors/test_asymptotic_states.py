@@ -8,12 +8,10 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import (
-    Chain,
     InitialState,
     Model,
     MotionKind,
     find_attractors,
-    law_of,
     limit_cycle,
     simulate,
     synchronized_orbit,
@@ -34,7 +32,7 @@ APART = InitialState("apart", (-0.9, -0.85), (0.1, 0.1))
 
 
 def pair(law, a):
-    return Model(Chain(2), law_of(law, a))
+    return Model(law, a=a, blocks=2)
 
 
 @pytest.mark.parametrize(("law", "a"), [("linearized", 0.05), ("linearized", 0.0501), ("nonlinear", 0.05)])
@@ -58,7 +56,7 @@ def test_slow_synchrony_is_synchrony(law, a):
 )
 def test_only_states_close_to_synchrony_count_as_approaching_it(v, apart, kind):
     """Within the resolution, which is proportional to v."""
-    model = Model(Chain(3), law_of("linearized", 0.05), v)
+    model = Model("linearized", a=0.05, v=v)
     on_it = synchronized_orbit(model).reference
     end = replace(on_it, position=on_it.position + np.array([0.0, 0.0, apart]))
     state = module._slow_synchrony(model, end, SEARCH, MOTION)
@@ -67,7 +65,7 @@ def test_only_states_close_to_synchrony_count_as_approaching_it(v, apart, kind):
 
 def test_a_state_whose_run_did_not_complete_is_undetermined():
     """It is not a number, and no start of a run."""
-    model = Model(Chain(3), law_of("linearized", 0.05), 0.1)
+    model = Model("linearized", a=0.05, v=0.1)
     lost = replace(synchronized_orbit(model).reference, position=np.full(3, np.nan))
     assert module._slow_synchrony(model, lost, SEARCH, MOTION).kind == MotionKind.UNDETERMINED
 
@@ -162,7 +160,7 @@ def test_the_average_over_chaos_and_its_mirror_image_is_used(script_answers, at,
     )
     script_answers(module, "run", [long])
     script_answers(module, "label", [(np.array([at]), None)])
-    model = Model(Chain(3), law_of("linearized", 0.08))
+    model = Model("linearized", a=0.08)
     state = module._state_on(model, [*chaos, stand_in(partner=2)], 0, SEARCH)
     assert state.kind == MotionKind.CHAOTIC
     assert (state.mean_distance, state.mean_distance_error) == ((0.2, 0.01) if whole else (0.3, 0.0))
@@ -200,5 +198,5 @@ def test_a_state_that_does_not_settle_is_undetermined():
     settings = replace(SEARCH, transient=200.0, window=200.0, time_limit=500.0)
     (state,) = asymptotic_states(pair("linearized", 0.0), [APART], settings)
     assert repr(state) == repr(AsymptoticState())
-    uneven = Model(Chain(2, threshold=(1.0, 0.9)), law_of("linearized", 0.0))
+    uneven = Model("linearized", a=0.0, blocks=2, threshold=(1.0, 0.9))
     assert asymptotic_states(uneven, [APART], settings)[0].kind == MotionKind.UNDETERMINED

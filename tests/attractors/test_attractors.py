@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.stats import binomtest
 
-from burridge_knopoff import Chain, ChainState, FormulaLaw, InitialState, Model, Settings, Symmetry, law_of, simulate
+from burridge_knopoff import Chain, ChainState, FormulaLaw, InitialState, Model, Settings, Symmetry, simulate
 from burridge_knopoff.attractors import search as search_module
 from burridge_knopoff.attractors.capture_radius import Capture
 from burridge_knopoff.attractors.labels import label, label_arrays
@@ -28,7 +28,7 @@ SETTINGS = SearchSettings(transient=2000.0, window=1500.0, seed=3, perturbations
 
 
 def model(law="linearized", a=0.08):
-    return Model(Chain(3), law_of(law, a))
+    return Model(law, a=a)
 
 
 def states(count, seed=5):
@@ -52,7 +52,9 @@ def test_labels_hold_for_whole_runs(search):
     assert np.median(times) < 500.0
     reached = set()
     for state, index in zip(chosen, labels, strict=True):
-        run = simulate("linearized", 0.08, state, transient=6000.0, window=2000.0, events="none", lyapunov_exponents=0)
+        run = simulate(
+            Model("linearized", a=0.08), state, transient=6000.0, window=2000.0, events="none", lyapunov_exponents=0
+        )
         expected = search.attractors[index].motion.mean_distance
         assert run.mean_distance == pytest.approx(expected, abs=2e-4)
         reached.add(index)
@@ -146,7 +148,7 @@ def test_an_orbit_embedded_in_chaos_is_distinguished_from_it():
     labels = embedded.labels(starts)
     means = [attractor.motion.mean_distance for attractor in embedded.attractors]
     for initial, index in (("minus", labels[-2]), ("plus", labels[-1])):
-        run = simulate("nonlinear", 0.2075, initial, transient=20000.0, window=4000.0, lyapunov_exponents=0)
+        run = simulate(Model("nonlinear", a=0.2075), initial, transient=20000.0, window=4000.0, lyapunov_exponents=0)
         assert run.mean_distance == pytest.approx(means[index], abs=max(1e-3, 4 * run.mean_distance_error))
     assert labels[-2] != labels[-1]
 
@@ -155,7 +157,7 @@ def test_an_orbit_embedded_in_chaos_is_distinguished_from_it():
 def test_chaos_of_high_dimension_is_an_attractor():
     """Its returns are so far apart that few states are close to one of them; its lifetime is 1.8 million."""
     chain = Chain(4, 1.657, [1.459, 0.817, 0.902, 0.501], [1.036, 1.205, 1.448, 1.439])
-    high = Search(Model(chain, law_of("carlson_langer", 0.525, {"sigma": 0.1})), SearchSettings(samples=10))
+    high = Search(Model("carlson_langer", a=0.525, sigma=0.1, chain=chain), SearchSettings(samples=10))
     labels = high.labels(high.starts((), "moving"))
     (chaos,) = high.attractors
     assert chaos.motion.kind == MotionKind.CHAOTIC
@@ -170,7 +172,7 @@ def test_the_linearized_law_is_the_same_at_any_driver_velocity(v):
     """All positions and velocities are proportional to v."""
     reference = Search(model(a=0.05), SETTINGS)
     motion = MotionSettings(synchronization_threshold=1e-6 * v / 0.1)
-    scaled = Search(Model(Chain(3), law_of("linearized", 0.05), v), SETTINGS, motion)
+    scaled = Search(Model("linearized", a=0.05, v=v), SETTINGS, motion)
     starts = [reference.model.begin(state) for state in states(25)]
     factor = v / 0.1
     rescaled = [ChainState(factor * start.position, factor * start.velocity, start.stuck) for start in starts]
@@ -205,7 +207,7 @@ def test_weak_chaos_is_distinguished_from_a_torus():
     """λ1 is 0.0019 at a = 0.1325: in the usual window its error hides it, and the motion looks like one on a torus."""
     weak = model(a=0.1325)
     begun = weak.begin(PAPER_STATES["minus"])
-    run = simulate("linearized", 0.1325, "plus", transient=100_000, window=60_000, batches=12)
+    run = simulate(Model("linearized", a=0.1325), "plus", transient=100_000, window=60_000, batches=12)
     assert run.lyapunov_exponent[0] > 4.0 * run.lyapunov_error[0]
     # About one run in thirty stays near a weakly repelling orbit for the whole window and is not recognised as chaos.
     motions = [
@@ -252,10 +254,10 @@ def test_orbits_to_which_perturbations_return_quickly_are_not_a_slow_set():
     "found_model",
     quick_first(
         [
-            Model(Chain(3, coupling=(1.0, 1.3), threshold=(1.0, 0.9, 1.1)), law_of("nonlinear", 0.1)),
-            Model(Chain(3), law_of("stribeck", 0.1)),
-            Model(Chain(3), FormulaLaw(0.1, "s + (1 - s)/(1 + a*u/(1 - s))**2", s=0.5)),
-            Model(Chain(4, ends="ring", pulling=1.5), law_of("exponential", 0.1)),
+            Model("nonlinear", a=0.1, coupling=(1.0, 1.3), threshold=(1.0, 0.9, 1.1)),
+            Model("stribeck", a=0.1),
+            Model(FormulaLaw("s + (1 - s)/(1 + a*u/(1 - s))**2", a=0.1, s=0.5)),
+            Model("exponential", a=0.1, blocks=4, ends="ring", pulling=1.5),
         ],
         1,
     ),
@@ -287,7 +289,7 @@ def test_synchrony_of_a_long_period_is_synchrony(coupling, section_period):
 
     Section points do not show the longer period; a longer window shows the other one.
     """
-    strong = Model(Chain(3, coupling=coupling), FormulaLaw(0.03, "1/(1 + a*u)**2"))
+    strong = Model(FormulaLaw("1/(1 + a*u)**2", a=0.03), coupling=coupling)
     reached, _ = find_attractors(strong, dataclasses.replace(SEARCH, samples=10))
     (as_one,) = [item.motion for item in reached if item.symmetry == SYNCHRONIZED]
     assert as_one.section_period == section_period

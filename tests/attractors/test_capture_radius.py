@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, Model, MotionKind, SearchSettings, law_of
+from burridge_knopoff import ChainState, Model, MotionKind, SearchSettings
 from burridge_knopoff.attractors import slow_set
 from burridge_knopoff.attractors.attractor import perturb, required_returns
 from burridge_knopoff.attractors.capture_radius import Capture, embedded_orbits
@@ -14,7 +14,7 @@ from burridge_knopoff.attractors.slow_set import sample_slow_set
 from tests.maps import TWO_WELLS, MapModel, rows_of
 from tests.motion.stand_in import ASYMMETRIC, at, section, stand_in
 
-MODEL = Model(Chain(3), law_of("linearized", 0.08), 0.2)
+MODEL = Model("linearized", a=0.08, v=0.2)
 SETTINGS = SearchSettings(transient=100.0, window=70.0, time_limit=900.0, seed=3, perturbations=10)
 CHAOS = {"kind": MotionKind.CHAOTIC, "spacing": 0.1}
 

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, SearchSettings, law_of
+from burridge_knopoff import Model, SearchSettings
 from burridge_knopoff.attractors import convergence as settling
 from burridge_knopoff.attractors.convergence import SYMMETRY_WINDOW, Convergence
 from burridge_knopoff.motion.section_returns import state_of
 from tests.motion.stand_in import section
 
-MODEL = Model(Chain(3), law_of("linearized", 0.08))
+MODEL = Model("linearized", a=0.08)
 #: Times are then numbers of transients or windows.
 SETTINGS = SearchSettings(transient=1.0, window=100.0)
 CLOSED, WIDE = 1e-7, 0.01
@@ -98,13 +98,13 @@ def test_a_set_is_its_own_mirror_image_if_it_covers_it(script_answers):
 def test_distances_grow_with_the_speed_of_the_driver():
     """The tolerance within which a periodic orbit repeats scales with v as well."""
     for v, resolution, tolerance in ((0.2, 2e-3, 1e-6), (0.1, 1e-3, 1e-6), (0.05, 5e-4, 5e-7)):
-        search = Convergence(Model(Chain(3), law_of("linearized", 0.08), v), SETTINGS)
+        search = Convergence(Model("linearized", a=0.08, v=v), SETTINGS)
         assert (search.resolution, search.tolerance) == pytest.approx((resolution, tolerance))
 
 
 def test_a_set_of_an_asymmetric_chain_must_be_filled_by_its_returns(script_answers):
     """This takes less time than for a set that may be one of two mirror images."""
-    uneven = Model(Chain(3, threshold=(1.0, 1.0, 0.9)), law_of("linearized", 0.08))
+    uneven = Model("linearized", a=0.08, threshold=(1.0, 1.0, 0.9))
     calls = script_answers(settling, "visit", [section(ONE, ONE[:0], WIDE, 0.0)] * 3)
     assert Convergence(uneven, SETTINGS).settle(state_of(ONE[0])) is not None
     assert [arguments[3] for arguments in calls] == [100, 200, 400]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, MotionSettings, SearchSettings, label_states, law_of
+from burridge_knopoff import Model, MotionSettings, SearchSettings, label_states
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.kernel._core import Clouds
 from burridge_knopoff.model.sampling import sample_initial_states, sample_states
@@ -41,7 +41,7 @@ def label_one_by_one(model, attractors, starts, end):
 )
 def test_labels_are_those_of_one_by_one(law, blocks, a, share, first, last):
     """In chaos the two kernels diverge, so a state near a basin boundary may end on the other side."""
-    model = Model(Chain(blocks), law_of(law, a))
+    model = Model(law, a=a, blocks=blocks)
     search = Search(model, SETTINGS, MotionSettings())
     box = (-1.5, 1.5), (0.0, 0.2)
     position, velocity = sample_states(blocks, 100 if blocks > 3 else 200, *box, 5)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, MotionKind, SearchSettings, find_attractors, law_of, simulate
+from burridge_knopoff import Chain, InitialState, Model, MotionKind, SearchSettings, find_attractors, simulate
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.attractors.settings import SEARCH
 from burridge_knopoff.model.initial import PAPER_STATES
@@ -31,7 +31,7 @@ from tests.flows import weakly_repelling
     ),
 )
 def test_motion_locked_to_a_period_longer_than_any_run_is_not_periodic(law, a, kind, points, period):
-    search = Search(Model(Chain(3), law_of(law, a)), growth_window=0.0)
+    search = Search(Model(law, a=a), growth_window=0.0)
     index = search.reach(search.model.begin(PAPER_STATES["plus"]))
     motion = search.attractors[index].motion
     assert (motion.kind.name, motion.section_period) == (kind, points)
@@ -51,7 +51,7 @@ def test_motion_locked_to_a_period_longer_than_any_run_is_not_periodic(law, a, k
 )
 def test_motion_that_still_drifts_is_not_an_attractor(law, a, coupling, blocks, mean):
     """Blocks on weak springs reach antiphase in a time of about 1/coupling, or are undetermined."""
-    weak = Model(Chain(blocks, coupling=coupling, pulling=1.0), law_of(law, a))
+    weak = Model(law, a=a, blocks=blocks, coupling=coupling, pulling=1.0)
     attractors, labels = find_attractors(weak, SearchSettings(samples=6))
     listed = [item.motion.mean_distance for item in attractors]
     assert listed == ([] if mean is None else [pytest.approx(mean, abs=3e-6)])
@@ -69,7 +69,7 @@ def test_a_state_on_an_unstable_orbit_reaches_the_chaos_around_it():
 
 @pytest.mark.slow
 def test_chaos_with_end_blocks_that_move_as_one_is_a_kind_of_its_own():
-    strong = Model(Chain(3, coupling=8.0, pulling=(1.0, 4.0, 1.0)), law_of("nonlinear", 1.0), 0.5)
+    strong = Model("nonlinear", a=1.0, coupling=8.0, pulling=(1.0, 4.0, 1.0), v=0.5)
     run = simulate(strong, initial="minus", transient=3000.0, window=3000.0)
     assert (run.mean_distance, run.lyapunov_exponent[0] > 0.1) == (0.0, True)
     assert motion_of_run(vars(run), True, MOTION).kind == MotionKind.SYNCHRONIZED_CHAOS
@@ -91,7 +91,7 @@ def test_chaos_with_end_blocks_that_move_as_one_is_a_kind_of_its_own():
 )
 def test_synchrony_on_a_torus_is_synchrony(chain, a, settings, law):
     """Runs and attractors have one kind, whether the torus is locked or not, and whatever the period."""
-    model = Model(chain, law_of(law, a))
+    model = Model(law, a=a, chain=chain)
     attractors, _ = find_attractors(model, settings)
     (synchrony,) = [item for item in attractors if item.symmetry == Symmetry.SYNCHRONIZED]
     assert synchrony.motion.kind == MotionKind.SYNCHRONIZED

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, label_states, law_of
+from burridge_knopoff import Model, MotionKind, SearchSettings, label_states
 from burridge_knopoff.attractors.labels import UNDETERMINED
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.basins import fractions
@@ -15,7 +15,7 @@ from burridge_knopoff.running.processes import parallel_map
 from burridge_knopoff.running.runner import Runner
 from tests.motion.stand_in import stand_in
 
-MODEL = Model(Chain(3), law_of("linearized", 0.08))
+MODEL = Model("linearized", a=0.08)
 END = 1000.0
 
 
@@ -70,7 +70,7 @@ def test_states_of_the_basin_fractions_obey_the_start_convention(script_answers)
     settings = SearchSettings(samples=0, fraction_width=0.134)
     for a, start in ((0.08, "tested"), (0.08, "moving"), (0.09, "tested")):
         with parallel_map(1) as pool:
-            fractions.fraction_labels([Search(MODEL.at(a), settings, attractors=[stand_in()])], start, pool)
+            fractions.fraction_labels([Search(MODEL.at(a=a), settings, attractors=[stand_in()])], start, pool)
     positions, velocities, sticks = zip(*(arguments[2:5] for arguments in calls), strict=True)
     expected = sticking(positions[0] + MODEL.sliding_offset)
     assert 0.2 < expected.mean() < 0.9
@@ -92,7 +92,7 @@ def test_states_obey_the_start_convention(reached):
 
 
 def test_blocks_may_slip_backward_under_a_symmetric_contact():
-    model = Model(Chain(3), law_of("linearized", 0.08), contact="symmetric")
+    model = Model("linearized", a=0.08, contact="symmetric")
     labels, _ = label_states(model, [], np.full((2, 3), -0.9), np.full((2, 3), -0.1))
     assert labels.tolist() == [UNDETERMINED] * 2
 

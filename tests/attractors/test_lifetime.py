@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.stats import poisson
 
-from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, find_attractors, law_of
+from burridge_knopoff import Model, MotionKind, SearchSettings, find_attractors
 from burridge_knopoff.attractors import lifetime
 from burridge_knopoff.attractors.attractor import Lifetime, perturb
 from burridge_knopoff.attractors.capture_radius import LONGEST_PATIENCE
@@ -17,7 +17,7 @@ from burridge_knopoff.motion.section_returns import state_of, visit
 from burridge_knopoff.motion.set_distance import SPACINGS, is_near
 from tests.motion.stand_in import stand_in
 
-MODEL = Model(Chain(3), law_of("linearized", 0.2))
+MODEL = Model("linearized", a=0.2)
 SETTINGS = SearchSettings(lifetime=800.0, time_limit=50.0, seed=5, window=10.0)
 #: Observation time of each trajectory.
 TIME = EXPOSURE * SETTINGS.lifetime / TRAJECTORIES
@@ -105,7 +105,7 @@ def test_chaos_next_to_a_locked_orbit_is_transient():
 
     The own count: of ten perturbed states at most two are still away from the orbit after 60 000 time units.
     """
-    attractors, labels = find_attractors(Model(Chain(3), law_of("nonlinear", 0.25), 0.3), SearchSettings(samples=20))
+    attractors, labels = find_attractors(Model("nonlinear", a=0.25, v=0.3), SearchSettings(samples=20))
     kinds = [attractor.motion.kind for attractor in attractors]
     (transient,) = [k for k, kind in enumerate(kinds) if kind == MotionKind.TRANSIENT_CHAOS]
     assert MotionKind.CHAOTIC not in kinds
@@ -262,7 +262,7 @@ def test_lifetimes_do_not_depend_on_how_slowly_a_trajectory_is_captured():
 
     Its mean lifetime is 109 000 (97 100 to 122 700), from 289 escapes with another solver, each detected by J.
     """
-    model = Model(Chain(3), law_of("linearized", 0.243828125))
+    model = Model("linearized", a=0.243828125)
     settings = SearchSettings()
     attractors, _ = find_attractors(model, settings)
     lives = [attractor.lifetime for attractor in attractors if attractor.lifetime]
@@ -275,7 +275,7 @@ def test_lifetimes_do_not_depend_on_how_slowly_a_trajectory_is_captured():
 
 def test_perturbations_depend_on_the_seed_and_scale_with_v(script_answers):
     """At twice the v of the paper the perturbations are up to twice a tenth of the resolution."""
-    fast, away = Model(Chain(3), MODEL.law, 0.2), []
+    fast, away = Model(MODEL.law, v=0.2), []
     for seed in (3, 3, 4):
         calls = script_answers(lifetime, "label_arrays", [(np.full(32, -1), np.zeros(32), np.zeros((32, 6)))])
         script_answers(lifetime, "label", [(np.zeros(32, int), None), (np.zeros(0, int), None)])

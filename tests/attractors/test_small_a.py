@@ -6,7 +6,7 @@ Averaged amplitude equations decide which of them attract: see docs/attractors.m
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Chain, Model
 from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.motion.rotation import rotation_number
 from burridge_knopoff.running.settings import Settings
@@ -60,7 +60,7 @@ def test_the_mean_distance_tends_to_that_of_the_modes(branch: str, limit: float,
     assert closed_form == pytest.approx(limit, abs=5e-6)
     distances, friction = [], np.array([0.0005, 0.001, 0.002])
     for a in friction:
-        model = Model(Chain(3), law_of(law, a), V)
+        model = Model(law, a=a, v=V)
         settings = Settings(
             transient=10.0 / a, window=20.0 / a, sampling=1.0 / a, trajectory=0.0, events="none", lyapunov_exponents=0
         )
@@ -75,7 +75,7 @@ def test_the_mean_distance_tends_to_that_of_the_modes(branch: str, limit: float,
 def test_the_frequencies_tend_to_those_of_the_modes() -> None:
     """sqrt(2/(3 + √3)) = 0.650, the ratio at which the end blocks oscillate on branch 1."""
     a = 0.0005
-    model = Model(Chain(3), law_of("linearized", a), V)
+    model = Model("linearized", a=a, v=V)
     number, error = rotation_number(model, modes(*MODES["branch 1"]), 10.0 / a)
     assert error < 1e-4
     assert number == pytest.approx(np.sqrt(2.0 / (3.0 + np.sqrt(3.0))), abs=1e-4)

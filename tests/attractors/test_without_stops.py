@@ -37,14 +37,14 @@ HOPF = 0.5 * math.log(10.0)
 
 def oscillator(v):
     """x'' + 0.1 x' + x on a belt of speed v, with friction 0.5 + 0.5 exp(−u/0.5)."""
-    law = law_of("belt", 0.0, formula="mud + (mus - mud)*exp(-u/v0)", mus=1.0, mud=0.5, v0=0.5)
-    return Model(Chain(1, pulling=1.0, pulling_damping=0.1), law, v, "symmetric")
+    law = law_of({"belt": {"formula": "mud + (mus - mud)*exp(-u/v0)"}}, mus=1.0, mud=0.5, v0=0.5)
+    return Model(law, blocks=1, pulling=1.0, pulling_damping=0.1, v=v, contact="symmetric")
 
 
 def cubic(chain, a=0.06, b=1.0):
     """Friction that decreases with speed at v = 0.5 with the slope −a and increases at other speeds: b(U' − v)³."""
-    law = law_of("cubic", a, formula="1 - a*(u - w) + b*(u - w)**3", w=0.5, b=b)
-    return Model(chain, law, 0.5, "symmetric")
+    law = law_of({"cubic": {"formula": "1 - a*(u - w) + b*(u - w)**3"}}, a=a, w=0.5, b=b)
+    return Model(law, chain=chain, v=0.5, contact="symmetric")
 
 
 def acceleration(model, state):
@@ -121,8 +121,8 @@ def test_sliding_of_the_friction_oscillator_attracts_above_the_critical_speed():
 
 
 def test_all_states_of_a_strongly_damped_chain_slide():
-    law = law_of("square", 0.02, formula="1/(1 + a*u)**2")
-    model = Model(Chain(5, coupling=1.5, damping=0.1, pulling_damping=0.05), law)
+    law = law_of({"square": {"formula": "1/(1 + a*u)**2"}}, a=0.02)
+    model = Model(law, blocks=5, coupling=1.5, damping=0.1, pulling_damping=0.05)
     attractors, labels = find_attractors(model, replace(SETTINGS, samples=50))
     assert [item.motion.kind.words for item in attractors] == ["uniform sliding"]
     assert (labels == 0).all()
@@ -175,7 +175,7 @@ def test_cycles_without_stops_are_attractors(chain, kinds):
 TORI = {
     "two frequencies of three blocks with opposite ends": cubic(Chain(3, coupling=0.7, pulling=1.0)),
     # The frequencies of its modes are nearly 4 : 5, so that its returns fill it within 16 windows only.
-    "next to a resonance": Model(Chain(3), law_of("cubic", 0.5, formula="1 - a*u + b*u**3", b=0.3), 0.7),
+    "next to a resonance": Model({"cubic": {"formula": "1 - a*u + b*u**3"}}, a=0.5, b=0.3, v=0.7),
 }
 
 
@@ -196,8 +196,8 @@ def test_a_torus_without_stops_is_an_attractor(model):
 @pytest.mark.parametrize("damping", [0.0, 0.02])
 def test_neutral_motion_is_no_attractor(chain, damping):
     """Friction that is linear in speed, or constant: cycles of any amplitude exist at the Hopf bifurcation."""
-    law = law_of("line", damping, formula="1 - a*u")
-    model = Model(replace(chain, pulling_damping=damping), law, 0.5, "symmetric")
+    law = law_of({"line": {"formula": "1 - a*u"}}, a=damping)
+    model = Model(law, chain=replace(chain, pulling_damping=damping), v=0.5, contact="symmetric")
     state = {"position": [0.02] * chain.blocks, "velocity": [0.5] * chain.blocks}
     small = simulate(model, initial=state, transient=0.0, window=1.0).initial
     offset = replace(small, position=tuple(np.array(small.position) + model.sliding_offset))
@@ -208,8 +208,8 @@ def test_neutral_motion_is_no_attractor(chain, damping):
 
 def test_the_maxima_of_the_velocity_are_those_of_a_harmonic_oscillator():
     """Constant friction: x = A cos τ, and the velocity is largest at x = 0 after 3π/2, 7π/2 …"""
-    law = law_of("constant", 0.0, formula="1 - a*u")
-    model = Model(Chain(1, pulling=1.0), law, 0.5)
+    law = law_of({"constant": {"formula": "1 - a*u"}}, a=0.0)
+    model = Model(law, blocks=1, pulling=1.0, v=0.5)
     start = model.begin(simulate(model, initial={"position": [0.0], "velocity": [0.5]}, window=1).initial)
     start = replace(start, position=np.array([0.2]), velocity=np.array([0.5]))
     times, rows = velocity_maxima(model, start, 10.0, 40.0)
@@ -267,8 +267,8 @@ def test_the_boundary_between_stick_slip_and_sliding_is_a_cycle_without_stops():
 @pytest.mark.parametrize("v", [0.7453, 0.74535, 0.745355])
 def test_the_amplitude_next_to_the_hopf_point_is_that_of_the_normal_form(v):
     """Friction 1 − a u + b u³: the amplitude A of the velocity has A² = 4 (a − 3 b v²)/(3 b) to leading order."""
-    law = law_of("cubic", 0.5, formula="1 - a*u + b*u**3", b=0.3)
-    model = Model(Chain(1, pulling=1.0), law, v)
+    law = law_of({"cubic": {"formula": "1 - a*u + b*u**3"}}, a=0.5, b=0.3)
+    model = Model(law, blocks=1, pulling=1.0, v=v)
     attractors, labels = find_attractors(model, SearchSettings(samples=4))
     assert labels.tolist() == [0] * 4
     amplitude = attractors[0].motion.returns[:, 1] - v
@@ -280,16 +280,16 @@ def test_the_amplitude_next_to_the_hopf_point_is_that_of_the_normal_form(v):
 @pytest.mark.parametrize("chain", [Chain(1, pulling=1.0), Chain(3)])
 def test_a_run_next_to_the_hopf_point_is_on_no_torus(chain, v):
     """Its amplitude still changes, at a rate of up to 4e-4; three blocks begin in all three modes."""
-    law = law_of("cubic", 0.5, formula="1 - a*u + b*u**3", b=0.3)
+    law = law_of({"cubic": {"formula": "1 - a*u + b*u**3"}}, a=0.5, b=0.3)
     state = {"position": [0.3, 0.1, -0.2][: chain.blocks], "velocity": [0.9, 0.8, 0.7][: chain.blocks]}
-    assert simulate(Model(chain, law, v), initial=state).kind == MotionKind.UNDETERMINED
+    assert simulate(Model(law, chain=chain, v=v), initial=state).kind == MotionKind.UNDETERMINED
 
 
 BRANCH = {"parameter": "v", "b": 0.3, "blocks": 2, "coupling": 0.4, "pulling": 1, "damping": 0.05}
 
 
 def hopf_point():
-    return hopf_bifurcations({"formula": "1 - a*u + b*u**3"}, 0.5, (0.4, 1.0), **BRANCH)[-1]
+    return hopf_bifurcations(Model({"formula": "1 - a*u + b*u**3"}, a=0.5), (0.4, 1.0), parameter="a", **BRANCH)[-1]
 
 
 @pytest.mark.slow

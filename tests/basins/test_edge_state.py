@@ -7,7 +7,6 @@ import pytest
 from scipy.stats import binomtest
 
 from burridge_knopoff import (
-    Chain,
     ContinuationSettings,
     EdgeSettings,
     InitialState,
@@ -18,7 +17,6 @@ from burridge_knopoff import (
     find_attractors,
     follow,
     label_states,
-    law_of,
     limit_cycle,
     synchronized_orbit,
 )
@@ -35,7 +33,7 @@ FEW = EdgeSettings(samples=100)
 
 def coexisting(law, a, samples=24, starts=()):
     """Return a model and the attractors that sampled and given states reach."""
-    model = Model(Chain(3), law_of(law, a))
+    model = Model(law, a=a)
     return model, find_attractors(model, samples=samples, transient=1000, window=1000, starts=starts)[0]
 
 
@@ -146,7 +144,9 @@ def test_the_saddle_is_the_orbit_with_which_the_attractor_is_born(a, start, stop
     model, attractors = coexisting("linearized", a, 60, [start] if start else [])
     orbits = {k: limit_cycle(model, item.motion.state()) for k, item in enumerate(attractors) if is_periodic(item)}
     index = next(k for k, orbit in orbits.items() if orbit.stop_counts == stops)
-    branch = follow(orbits[index], (0.15, a), ContinuationSettings(largest_step=2e-3, max_orbits=400), upward=False)
+    branch = follow(
+        orbits[index], (0.15, a), ContinuationSettings(largest_step=2e-3, max_orbits=400), upward=False, parameter="a"
+    )
     assert (branch[0].multipliers.unstable_count, branch[-1].multipliers.unstable_count) == (0, 1)
     # The last orbit lies beyond a.
     saddle = KnownOrbits(branch[-2].orbit).at(a)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff import Chain, ChainState, Model
 from burridge_knopoff.basins.initial_phases import (
     common_phases,
     has_free_ends,
@@ -17,8 +17,8 @@ from burridge_knopoff.basins.initial_phases import (
 from burridge_knopoff.running.runner import Runner
 from tests.refused import refused
 
-MODEL = Model(Chain(3), law_of("linearized", 0.08))
-UNEQUAL = Model(Chain(4, coupling=[1.0, 2.0, 3.0], pulling=0.5), law_of("nonlinear", 0.1), v=0.2)
+MODEL = Model("linearized", a=0.08)
+UNEQUAL = Model("nonlinear", a=0.1, blocks=4, coupling=[1.0, 2.0, 3.0], pulling=0.5, v=0.2)
 
 
 @pytest.mark.parametrize("model", [MODEL, UNEQUAL])
@@ -103,7 +103,7 @@ def test_an_inner_block_oscillates_at_its_frequency_while_its_neighbours_slide()
 def test_end_blocks_joined_by_a_spring_are_refused(chain):
     """Opposite and equal phases are then (nearly) normal modes with frequencies other than √K_11: they are refused."""
     assert not has_free_ends(chain)
-    model = Model(chain, law_of("linearized", 0.08))
+    model = Model("linearized", a=0.08, chain=chain)
     with refused(f"chain: {chain.blocks}"):
         oscillating_states(model, *(np.array([x]) for x in (0.01, 180.0, 0.0)))
     if chain.blocks == 2:

@@ -21,13 +21,13 @@ from tests.refused import refused
 
 SEARCH = replace(SETTINGS, samples=25, fraction_width=0.18)
 PLANE = BasinSettings(pixels=16, pairs=300, tiles=1)
-MODEL = Model(Chain(3), law_of("linearized", 0.08))
+MODEL = Model("linearized", a=0.08)
 
 
 @pytest.fixture(scope="module")
 def searched():
     states = list(PAPER_STATES.values())
-    continuation = continue_attractors([MODEL, MODEL.at(0.1)], SEARCH, MOTION, RefinementSettings(1.0), starts=states)
+    continuation = continue_attractors([MODEL, MODEL.at(a=0.1)], SEARCH, MOTION, RefinementSettings(1.0), starts=states)
     parts = [attractors.one_law(continuation, states, SEARCH, MOTION, "moving")]
     rows = [continuation.rows(place) for place in continuation.grid]
     whole = branch_numbering.merge(parts, branch_numbering.branch_numbers(parts, [MODEL], SEARCH))
@@ -66,10 +66,10 @@ def test_any_number_of_cores_and_tiles_gives_the_same_labels(table, attractors_a
     assert len(np.unique(basin_maps["branch"])) >= 2
 
 
-def check_run(table, state, branch, **conventions):
+def check_run(table, state, branch, contact="one_sided", **conventions):
     """Compare the branch that a state reaches with the mean distance of a full run."""
     options = {"transient": 6000.0, "window": 1000.0, "events": "none", "lyapunov_exponents": 0}
-    run = simulate("linearized", 0.08, state, **options, **conventions)
+    run = simulate(Model("linearized", a=0.08, contact=contact), state, **options, **conventions)
     there = table.sel(law="linearized", a=0.08)
     mean = there["mean_distance"].values[there["branch"].values == branch.item()][0]
     assert run.mean_distance == pytest.approx(mean, abs=2e-4), (state, conventions)
@@ -103,7 +103,7 @@ def test_a_plane_of_states():
 def test_attractors_are_read_back_unchanged(searched, place, pairs):
     """This includes returns, mirror images and all values that determine a label."""
     table, returns, rows = searched
-    model = MODEL.at((0.08, 0.1)[place])
+    model = MODEL.at(a=(0.08, 0.1)[place])
     restored, expected = known_attractors(table, returns, model), [row.attractor for row in rows[place]]
     assert restored.side.tolist() == [row.side for row in rows[place]]
     assert np.count_nonzero(restored.side) == 2 * pairs
@@ -122,8 +122,8 @@ def test_attractors_are_read_back_unchanged(searched, place, pairs):
 @pytest.mark.parametrize(
     ("other", "message"),
     [
-        (replace(MODEL, law=law_of("nonlinear", 0.08)), "model.law: 'nonlinear'"),
-        (MODEL.at(0.09), "model.a: 0.09"),
+        (replace(MODEL, law=law_of("nonlinear", a=0.08)), "model.law: 'nonlinear'"),
+        (MODEL.at(a=0.09), "model.a: 0.09"),
         (replace(MODEL, v=0.2), "model.v: 0.2"),
         (replace(MODEL, contact="symmetric"), "model.contact: 'symmetric'"),
         (replace(MODEL, chain=Chain(4)), "model.blocks: 4"),
@@ -144,7 +144,7 @@ def test_without_attractors_all_states_are_undetermined(searched):
     table, returns, _ = searched
     none = table.sel(a=[0.08]).assign_coords(a=[0.0])
     none["branch"].values[...] = -1
-    merged = whole(none, known_attractors(none, returns, MODEL.at(0.0)), 1, 1)
+    merged = whole(none, known_attractors(none, returns, MODEL.at(a=0.0)), 1, 1)
     assert (merged["branch"] == -1).all()
     assert merged["undetermined_count"].item() == 16 * 16
     assert (merged["pair_count"] == 0).all()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, law_of, record_events
+from burridge_knopoff import InitialState, Model, record_events
 from burridge_knopoff.catalogue import slope
 from burridge_knopoff.catalogue.batches import BATCHES, batch_index, batch_sums, rate_error, ratio_error
 from tests.refused import refused
@@ -101,7 +101,7 @@ def test_an_error_needs_several_batches():
 
 def starts(blocks, end, count):
     """Return the catalogues of a chain from independent initial states, from τ = 1000 on."""
-    model = Model(Chain(blocks, coupling=9, pulling=1), law_of("carlson_langer", 3.0), v=0.01)
+    model = Model("carlson_langer", a=3.0, blocks=blocks, coupling=9, pulling=1, v=0.01)
     for seed in range(1, count + 1):
         rough = InitialState("rough", {"random": "uniform", "low": -1, "high": -0.9, "seed": seed}, 0)
         yield record_events(model, model.begin(rough, "tested"), end, begin=1000.0)

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff import ChainState, Model
 from burridge_knopoff.catalogue.events import record_events
 from tests.kernel.test_catalogue import at_rest
 from tests.refused import refused
 
-MODEL = Model(Chain(30, coupling=20.0, pulling=1.0), law_of("carlson_langer", 2.0), 0.01)
+MODEL = Model("carlson_langer", a=2.0, blocks=30, coupling=20.0, pulling=1.0, v=0.01)
 
 
 def test_profiles_add_up_to_moments():
@@ -31,7 +31,7 @@ def test_events_before_the_beginning_are_excluded():
 @pytest.mark.parametrize("loading", ["steady", "quasistatic"])
 @pytest.mark.parametrize("blocks", [5, 23, 24])
 def test_consecutive_runs_have_the_catalogue_of_the_whole_run(blocks, loading):
-    model = Model(Chain(blocks, coupling=20.0, pulling=1.0), law_of("carlson_langer", 2.0), 0.01)
+    model = Model("carlson_langer", a=2.0, blocks=blocks, coupling=20.0, pulling=1.0, v=0.01)
     whole = record_events(model, at_rest(model), 300.0, profiles=True, loading=loading)
     parts, at = [], at_rest(model)
     # Under steady loading the first run ends within an event.
@@ -52,7 +52,7 @@ def test_consecutive_runs_have_the_catalogue_of_the_whole_run(blocks, loading):
 @pytest.mark.parametrize("ends", ["open", "ring"])
 def test_ends_and_intervals(ends):
     """Events cover all blocks between their ends, also across the seam of a ring; intervals are those of the blocks."""
-    model = Model(Chain(30, coupling=9.0, pulling=1.0, ends=ends), law_of("carlson_langer", 3.0), 0.01)
+    model = Model("carlson_langer", a=3.0, blocks=30, coupling=9.0, pulling=1.0, ends=ends, v=0.01)
     events = record_events(model, at_rest(model), 1500.0, profiles=True)
     first, last = events.first_block, events.last_block
     blocks = [set(part.tolist()) for part in np.split(events.slip_block, events.slip_end[:-1])]
@@ -72,7 +72,7 @@ def test_ends_and_intervals(ends):
 
 def test_the_largest_slip_may_be_backward():
     """A block ahead of the driver slips back."""
-    model = Model(Chain(1, pulling=1.0), law_of("nonlinear", 0.3), 0.1, "symmetric")
+    model = Model("nonlinear", a=0.3, blocks=1, pulling=1.0, v=0.1, contact="symmetric")
     ahead = ChainState(1.5 - model.sliding_offset, np.zeros(1), np.ones(1, dtype=bool))
     events = record_events(model, ahead, 5.0)
     assert events.moment[0] < -0.5

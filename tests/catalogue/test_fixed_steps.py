@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Model
 from burridge_knopoff.catalogue.events import record_events
 from tests.kernel.test_catalogue import at_rest
 from tests.refused import refused
 
-MODEL = Model(Chain(4, coupling=0.2, pulling=1.0), law_of("linearized", 1.2), 0.1)
+MODEL = Model("linearized", a=1.2, blocks=4, coupling=0.2, pulling=1.0, v=0.1)
 START = at_rest(MODEL, spread=0.3)
 END = 60.0
 COLUMNS = ("duration", "epicentre", "blocks", "moment", "largest_slip", "peak_velocity", "energy_released", "interval")

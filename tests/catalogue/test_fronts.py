@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff import Chain, ChainState, Model
 from burridge_knopoff.catalogue.events import record_events
 
 
@@ -14,7 +14,7 @@ def test_steady_fronts_under_coulomb_friction(stress, loading):
     blocks, coupling, sigma = 250, 4.0, 0.25
     # No block between the ends has a spring to the driver.
     row = Chain(blocks, coupling=coupling, pulling=[1.0] + [0.0] * (blocks - 2) + [1.0])
-    model = Model(row, law_of("carlson_langer", 0.0, {"sigma": sigma}), v=1e-4)
+    model = Model("carlson_langer", a=0.0, sigma=sigma, chain=row, v=1e-4)
     force = np.full(blocks, 1.0 - sigma + sigma * stress)
     force[0] = 1.0 - 1e-9
     position = -np.linalg.solve(row.stiffness, force) - model.sliding_offset

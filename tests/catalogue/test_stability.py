@@ -49,7 +49,7 @@ def growth_between(model, start, times, count, loading):
 @pytest.mark.parametrize("blocks", quick_first([3, 24, 2, 7, 23, 30], 2))
 def test_exponents_under_quasistatic_loading_are_those_of_the_maps_from_event_to_event(blocks):
     """All exponents agree; each map has one that is −∞. They were 0 when batches ended at a time of the slip clock."""
-    model = Model(Chain(blocks, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 1.0)
+    model = Model("carlson_langer", a=1.5, blocks=blocks, coupling=3.0, pulling=1.0, v=1.0)
     start, begin, end = rough(model), 2.0, 2.0 + 60.0 / blocks
     spectrum = event_exponents(model, start, end, begin=begin, count=blocks, loading="quasistatic")
     # The run is computed as a whole, like the perturbations; in chaos a run in groups would diverge from it.
@@ -81,7 +81,7 @@ def rests(model, start, end):
 
 @pytest.mark.parametrize("blocks", quick_first([3, 2, 12], 1))
 def test_exponents_under_a_steady_driver_are_those_of_the_flow(blocks):
-    model = Model(Chain(blocks, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 0.02 / blocks)
+    model = Model("carlson_langer", a=1.5, blocks=blocks, coupling=3.0, pulling=1.0, v=0.02 / blocks)
     start = rough(model)
     times = rests(model, start, 60.0 / model.v)
     times = times[times > 6.0 / model.v]
@@ -98,7 +98,7 @@ def test_exponents_under_a_steady_driver_are_those_of_the_flow(blocks):
 @pytest.mark.parametrize("v", [1e-3, 1e-5])
 def test_one_block_under_a_steady_driver_has_the_exponent_zero(v):
     """Each event repeats the previous one. Windows that ended within slips once gave -0.14 and -0.38."""
-    model = Model(Chain(1, pulling=1.0), law_of("carlson_langer", 2.0), v)
+    model = Model("carlson_langer", a=2.0, blocks=1, pulling=1.0, v=v)
     spectrum = event_exponents(model, rough(model), 10.5 / v, begin=0.7 / v, loading="steady")
     assert spectrum.events > 10
     assert spectrum.exponent[0] == pytest.approx(0.0, abs=1e-6)
@@ -108,7 +108,7 @@ def test_one_block_under_a_steady_driver_has_the_exponent_zero(v):
 @pytest.mark.parametrize("law", ["linearized", "nonlinear"])
 def test_one_block_has_the_exponent_zero_wherever_the_window_ends(law):
     """It slips for almost half of the time; the last batch once ended within a slip."""
-    model = Model(Chain(1, pulling=1.0), law_of(law, 0.3), 0.1)
+    model = Model(law, a=0.3, blocks=1, pulling=1.0, v=0.1)
     start = model.begin(InitialState("rest", (-0.8,), 0.0), "tested")
     spectra = [event_exponents(model, start, end, loading="steady") for end in np.arange(300.0, 310.0, 0.25)]
     assert len({item.events for item in spectra}) > 1
@@ -121,7 +121,7 @@ def test_one_block_has_the_exponent_zero_wherever_the_window_ends(law):
 @pytest.mark.parametrize("blocks", [3, 7])
 def test_a_window_that_ends_within_a_slip_counts_up_to_the_last_rest(blocks, seed):
     """In longer chains events overlap: one that ends before the window does may leave others that do not."""
-    model = Model(Chain(blocks, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 0.1 / blocks)
+    model = Model("carlson_langer", a=1.5, blocks=blocks, coupling=3.0, pulling=1.0, v=0.1 / blocks)
     start, latest = rough(model, seed), 600.0 * blocks
     runner = Runner(model, keep_events=True)
     runner.begin(start)
@@ -144,7 +144,7 @@ def test_exponents_per_event_depend_on_no_unit(blocks, loading):
     spectra = []
     for factor in (1.0, 16.0, 1024.0):
         chain = Chain(blocks, coupling=2.0 * factor, pulling=factor, mass=1.0 / factor)
-        model = Model(chain, law_of("carlson_langer", 2.0, {"sigma": 0.0625}), 0.125)
+        model = Model("carlson_langer", a=2.0, sigma=0.0625, chain=chain, v=0.125)
         start = ChainState(position / factor, np.zeros(blocks), np.ones(blocks, dtype=bool))
         spectra.append(event_exponents(model, start, 128.0 / factor, begin=16.0 / factor, count=2, loading=loading))
     assert spectra[0].events > 10
@@ -156,7 +156,7 @@ def test_exponents_per_event_depend_on_no_unit(blocks, loading):
 
 def test_a_chain_that_slips_at_the_start_or_never_rests_has_exponents():
     """The search for times of rest begins at the start of the run; there may be none."""
-    model = Model(Chain(3, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 0.02)
+    model = Model("carlson_langer", a=1.5, coupling=3.0, pulling=1.0, v=0.02)
     slipping = ChainState(rough(model).position, np.array([3.0, 0.0, 0.0]), np.array([False, True, True]))
     runner = Runner(model, keep_events=True)
     runner.begin(slipping)
@@ -168,7 +168,7 @@ def test_a_chain_that_slips_at_the_start_or_never_rests_has_exponents():
     events = record_events(model, slipping, 2000.0)
     # All events but those before the first rest.
     assert spectrum.events == np.count_nonzero(events.time > rest) > 20
-    restless = Model(Chain(3), law_of("linearized", 0.05), 0.3)
+    restless = Model("linearized", a=0.05, v=0.3)
     spectrum = event_exponents(restless, restless.begin(PAPER_STATES["minus"]), 400.0, begin=100.0, loading="steady")
     assert spectrum.status == Status.COMPLETED
 
@@ -177,7 +177,7 @@ def test_a_chain_that_slips_at_the_start_or_never_rests_has_exponents():
 @pytest.mark.parametrize("share", [-1.1, -0.9, 0.5, 1.0])
 def test_multipliers_begin_at_rest(loading, share):
     """They were once wrong for a block beyond its backward threshold, which starts before any loading."""
-    model = Model(Chain(3, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 0.02, "symmetric")
+    model = Model("carlson_langer", a=1.5, coupling=3.0, pulling=1.0, v=0.02, contact="symmetric")
     # Spring forces, as fractions of the thresholds, below the threshold except at the first block.
     position = np.linalg.solve(model.chain.stiffness, -np.array([share, 0.3, -0.2]))
     start = ChainState(position - model.sliding_offset, np.zeros(3), np.ones(3, dtype=bool))
@@ -226,7 +226,7 @@ def test_multipliers_begin_at_rest(loading, share):
 def test_multipliers_count_the_dashpots_to_the_driver(share, contact, loading, is_refused):
     """A block beyond its threshold because of its dashpot was once taken for one at rest."""
     chain = Chain(2, coupling=2.0, pulling=1.0, pulling_damping=(0.5, 0.0))
-    model = Model(chain, law_of("carlson_langer", 1.0), 0.1, contact)
+    model = Model("carlson_langer", a=1.0, chain=chain, v=0.1, contact=contact)
     position = np.linalg.solve(chain.stiffness, -np.array([share, -0.2]))
     start = ChainState(position - model.sliding_offset, np.zeros(2), np.ones(2, dtype=bool))
     events = record_events(model, start, 200.0, loading=loading)
@@ -245,7 +245,7 @@ def test_multipliers_count_the_dashpots_to_the_driver(share, contact, loading, i
 def test_the_exponent_of_two_blocks_is_that_of_their_map():
     """SciPy integrates the map from stop to start to stop; finite differences give its derivative."""
     model = Model(
-        Chain(2, coupling=3.62, pulling=1.0, threshold=(1.0, 2.25)), law_of("carlson_langer", 0.0, {"sigma": 0.2}), 1.0
+        "carlson_langer", a=0.0, sigma=0.2, blocks=2, coupling=3.62, pulling=1.0, threshold=(1.0, 2.25), v=1.0
     )
     position = np.array([-0.5, -0.8])
     start = ChainState(position - model.sliding_offset, np.zeros(2), np.ones(2, dtype=bool))
@@ -267,7 +267,7 @@ def test_the_exponent_of_two_blocks_is_that_of_their_map():
 @pytest.mark.parametrize("loading", ["steady", "quasistatic"])
 def test_exponents_do_not_depend_on_the_clock_of_the_state(loading):
     """Errors were once 6.7 times too small for a late state, whose events all fell into one batch."""
-    model = Model(Chain(3, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 0.1)
+    model = Model("carlson_langer", a=1.5, coupling=3.0, pulling=1.0, v=0.1)
     spectra = [
         event_exponents(model, rough(model, time=time), time + 512.0, loading=loading)
         for time in (0.0, 2.0**14, -(2.0**14))
@@ -282,8 +282,8 @@ def test_exponents_do_not_depend_on_the_clock_of_the_state(loading):
 @pytest.mark.parametrize("end", [0.5, 1.5, 2.5, 4.0])
 def test_no_exponent_without_an_event(loading, end):
     """Neither before the first event, nor if only one time of rest lies in the run."""
-    law = law_of("linearized", 0.3) if loading == "steady" else law_of("carlson_langer", 0.0, {"sigma": 0.2})
-    model = Model(Chain(1, pulling=1.0), law, 0.1 if loading == "steady" else 0.01)
+    law = law_of("linearized", a=0.3) if loading == "steady" else law_of("carlson_langer", a=0.0, sigma=0.2)
+    model = Model(law, blocks=1, pulling=1.0, v=0.1 if loading == "steady" else 0.01)
     start = model.begin(InitialState("rest", (-0.8,), (0.0,)), "tested")
     spectrum = event_exponents(model, start, end, loading=loading)
     assert spectrum.events == 0
@@ -293,7 +293,7 @@ def test_no_exponent_without_an_event(loading, end):
 @pytest.mark.parametrize("loading", ["steady", "quasistatic"])
 def test_no_exponent_of_a_run_that_did_not_complete(loading, monkeypatch):
     """The growth until the last whole batch, divided by all events, was once an exponent."""
-    model = Model(Chain(3, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 0.1)
+    model = Model("carlson_langer", a=1.5, coupling=3.0, pulling=1.0, v=0.1)
     whole = event_exponents(model, rough(model), 300.0, count=2, loading=loading)
     values = (f"{value:.6g} +- {error:.1g}" for value, error in zip(whole.exponent, whole.error, strict=True))
     assert repr(whole) == f"<EventExponents {', '.join(values)}, {whole.events} events>"

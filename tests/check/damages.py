@@ -10,7 +10,7 @@ from typing import Any
 import netCDF4
 import numpy as np
 
-from burridge_knopoff import simulate
+from burridge_knopoff import Model, simulate
 from burridge_knopoff.dataset.point import write_point
 
 #: A point that is read by all stages that read points.
@@ -49,7 +49,7 @@ def edit(path: Path, change: Callable[[Any], object]) -> None:
 
 def other_run(path: Path, a: float = 0.2, **settings: Any) -> None:
     """Replace a point file by that of another run."""
-    write_point(simulate("linearized", a, "minus", **{**RUN, **settings}), path)
+    write_point(simulate(Model("linearized", a=a), "minus", **{**RUN, **settings}), path)
 
 
 #: {damage: (function that damages a point file, words of the reason)}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from burridge_knopoff import Chain, InitialState, Model, law_of
+from burridge_knopoff import Chain, InitialState, Model
 from burridge_knopoff.claims.equations import equation_difference
 from burridge_knopoff.running.runner import Runner
 
@@ -22,7 +22,7 @@ def test_eq_2_is_what_a_run_solves() -> None:
     mass, spring, friction, slope, speed = 3.0, 7.0, 5.0, 0.4, 0.6
     root = np.sqrt(spring * mass)
     a, v = slope * friction / root, speed * root / friction
-    model = Model(Chain(3), law_of("nonlinear", a), v=v)
+    model = Model("nonlinear", a=a, v=v)
     start = InitialState("start", (-0.8, -0.65, -0.8), (1.1 * v, 0.9 * v, v))
     length, time = friction / spring, np.sqrt(mass / spring)
     springs = spring * np.array([[2.0, -1.0, 0.0], [-1.0, 4.0, -1.0], [0.0, -1.0, 2.0]])

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import burridge_knopoff
-from burridge_knopoff import Chain, Model, Settings, law_of, limit_cycle, multipliers, synchronized_orbit
+from burridge_knopoff import Model, Settings, limit_cycle, multipliers, synchronized_orbit
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.cli import main
 from burridge_knopoff.dataset.summary import open_summary
@@ -19,7 +19,7 @@ from burridge_knopoff.running.status import EXIT_CODE
 from burridge_knopoff.show.attractors import attractor_table
 from burridge_knopoff.study.formatting import to_ascii, with_error
 
-MODEL = Model(Chain(3), law_of("linearized", 0.08))
+MODEL = Model("linearized", a=0.08)
 GIVEN = ["--law", "linearized", "--a", "0.08"]
 #: Little of a search, in settings and as options.
 SHORT = {"samples": 12, "lifetime": 1000.0, "transient": 500.0, "window": 500.0, "time_limit": 5000.0}
@@ -92,7 +92,7 @@ def test_basins_of_one_block(capsys):
 
 def test_the_synchronized_orbit(capsys):
     for a, words in ((0.08, "stable: no multiplier outside"), (0.12, "unstable: 1 multiplier outside")):
-        orbit = synchronized_orbit(MODEL.at(a))
+        orbit = synchronized_orbit(MODEL.at(a=a))
         printed = said(capsys, "orbit", "--law", "linearized", "--a", str(a))
         assert f"period       {orbit.period:.9f}\n" in printed
         assert f"mirror-breaking perturbations: {multipliers(orbit).transverse.real:.6g}\n" in printed
@@ -105,7 +105,7 @@ def test_a_synchronized_orbit_that_repels_symmetric_perturbations(capsys):
     for coupling, repels in ((1.5, True), (1.0, False)):
         options = ["--law", "linearized", "--a", "0.2", "--coupling", str(coupling)]
         printed = said(capsys, "orbit", *options)
-        model = Model(Chain(3, coupling=coupling), law_of("linearized", 0.2))
+        model = Model("linearized", a=0.2, coupling=coupling)
         symmetric = multipliers(synchronized_orbit(model)).symmetry_preserving[0]
         assert f"mirror-symmetric perturbations: {symmetric.real:.6g}" in printed
         assert ("synchrony    the orbit repels mirror-symmetric perturbations" in printed) == repels

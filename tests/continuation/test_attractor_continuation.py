@@ -6,7 +6,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, SearchSettings, law_of
+from burridge_knopoff import Model, SearchSettings
 from burridge_knopoff.basins import fractions
 from burridge_knopoff.continuation.attractor_continuation import continue_attractors
 from burridge_knopoff.continuation.settings import RefinementSettings
@@ -15,7 +15,7 @@ from burridge_knopoff.motion.settings import MOTION
 
 
 def models(a_values):
-    return [Model(Chain(3), law_of("linearized", a)) for a in a_values]
+    return [Model("linearized", a=a) for a in a_values]
 
 
 def same(one, other):

@@ -9,13 +9,11 @@ import xarray as xr
 
 from burridge_knopoff import (
     BifurcationKind,
-    Chain,
     EdgeSettings,
     Model,
     MotionKind,
     Symmetry,
     find_attractors,
-    law_of,
 )
 from burridge_knopoff.attractors.stored_returns import KnownAttractors
 from burridge_knopoff.continuation.edges import approach, attractor_pairs, continue_edges, distinct_edges, edge_between
@@ -31,7 +29,7 @@ LOST = 0.0869729047
 
 def known_at(a, branches, samples=40):
     """Return the attractors at an a, in the order of ⟨J⟩; branches : their numbers in that order."""
-    model = Model(Chain(3), law_of("linearized", a))
+    model = Model("linearized", a=a)
     unordered, _ = find_attractors(model, samples=samples, transient=1000, window=1000)
     order = sorted(range(len(unordered)), key=lambda k: (round(unordered[k].motion.mean_distance, 6), k))
     place = {k: number for number, k in enumerate(order)}
@@ -103,7 +101,7 @@ def merging():
 def test_mirror_images_merge_where_both_meet_the_synchronized_orbit(merging):
     table, edge_states = merging
     state = table.attractors[0].motion.state()
-    far, near = (approach(table.model.at(a), state, edge_states, 3) for a in (0.175, 0.1772))
+    far, near = (approach(table.model.at(a=a), state, edge_states, 3) for a in (0.175, 0.1772))
     for close in (far, near):
         assert edge_states[close.edge].state.symmetry == Symmetry.SYNCHRONIZED
         assert 0.05 < close.size < 0.1
@@ -115,9 +113,9 @@ def test_the_crisis_names_the_saddle(merging, tmp_path: Path):
     """In bifurcations.nc and in words; edges of another law come first, so indices are shifted."""
     table, edge_states = merging
     segments, numbers = continue_edges(edge_states, 0.18)
-    near = approach(table.model.at(0.1772), table.attractors[0].motion.state(), edge_states, 3)
+    near = approach(table.model.at(a=0.1772), table.attractors[0].motion.state(), edge_states, 3)
     law_edges = edges._of_law(table.model, edge_states, numbers, segments, [(0.1773, 3, near)], 3)
-    other = Model(Chain(3), law_of("nonlinear", 0.175))
+    other = Model("nonlinear", a=0.175)
     first = edges._of_law(other, edge_states[:1], numbers[:1], segments, [], 3)
     whole = edges.merge([first, law_edges])
     assert whole["crisis_edge"].values.tolist() == [1 + near.edge]

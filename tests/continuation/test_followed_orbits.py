@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff import Chain, Model, MotionKind, OrbitError, law_of
+from burridge_knopoff import Model, MotionKind, OrbitError
 from burridge_knopoff.continuation import followed_orbits
 from burridge_knopoff.continuation.branch_changes import BranchChange, Change
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbit
@@ -27,7 +27,7 @@ def test_orbits_of_different_periods_are_continued_separately(
 
     So are results from the cache, of which one may be that an orbit cannot be followed.
     """
-    orbit = synchronized_orbit(Model(Chain(3), law_of("linearized", 0.05)))
+    orbit = synchronized_orbit(Model("linearized", a=0.05))
     periods = [1.0, 1.0001, 1.01, 0.99]
 
     def limit_cycle(model, at):

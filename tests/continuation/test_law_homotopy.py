@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
+from burridge_knopoff import Model, SearchSettings, find_attractors
 from burridge_knopoff.continuation import law_homotopy
 from burridge_knopoff.continuation.law_homotopy import STEPS, follow_law, match_branches
 from burridge_knopoff.continuation.matching import SAME_SET
@@ -16,7 +16,7 @@ A = 0.06
 
 @pytest.fixture(scope="module")
 def models():
-    return [Model(Chain(3), law_of(law, A)) for law in ("linearized", "nonlinear")]
+    return [Model(law, a=A) for law in ("linearized", "nonlinear")]
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +53,7 @@ def test_branches_are_joined_whatever_their_numbers(models, attractors_of_laws):
 
 def test_mirror_images_are_one_branch():
     """Each of them as in a file: a state at a stop of block 1."""
-    model = Model(Chain(3), law_of("linearized", 0.1))
+    model = Model("linearized", a=0.1)
     attractors, _ = find_attractors(model, SETTINGS)
     first, second = (item.motion.state() for index, item in enumerate(attractors) if item.partner != index)
     assert np.abs(first.vector() - second.vector()).max() > 0.01
@@ -63,7 +63,7 @@ def test_mirror_images_are_one_branch():
 
 @pytest.mark.parametrize(("v", "expected"), [(0.1, {0: 0}), (0.2, {0: 0, 3: 1})])
 def test_the_distance_within_which_branches_match_grows_with_the_velocity(v, expected, attractors_of_laws, monkeypatch):
-    models = [Model(Chain(3), law_of(law, A), v) for law in ("linearized", "nonlinear")]
+    models = [Model(law, a=A, v=v) for law in ("linearized", "nonlinear")]
     first, second = (part[1].motion.state() for part in attractors_of_laws)
     near = second.vector()[None] + 1.5 * SAME_SET
     monkeypatch.setattr(law_homotopy, "follow_law", lambda *_, **__: section(near, near, 0.0, 0.0))
@@ -79,7 +79,7 @@ def follow(script_answers):
         calls = script_answers(
             law_homotopy, "visit", [None if points is None else section(points, points, 0.0, 0.0) for points in sets]
         )
-        pair = [Model(Chain(3), law_of(law, 0.5), 0.2, "symmetric") for law in ("linearized", "nonlinear")]
+        pair = [Model(law, a=0.5, v=0.2, contact="symmetric") for law in ("linearized", "nonlinear")]
         start = section(np.full((1, 6), 7.0), np.zeros((0, 6)), 0.0, 0.0).state()
         return follow_law(*pair, start, SETTINGS), calls
 
@@ -108,13 +108,13 @@ def test_a_torus_may_be_locked_on_the_way(follow):
 
 def test_if_two_branches_arrive_at_one_the_longer_is_matched(monkeypatch):
     """Each is followed at three of the values of a at which it exists; the longer one arrives from two of them."""
-    models = [[Model(Chain(3), law_of(law, 0.1 * k)) for k in range(6)] for law in ("linearized", "nonlinear")]
+    models = [[Model(law, a=0.1 * k) for k in range(6)] for law in ("linearized", "nonlinear")]
     near, far = (section(np.full((1, 6), place), np.zeros((0, 6)), 0.0, 0.0) for place in (0.0, 9.0))
     calls = []
 
     def follow(first, second, start, **_):
-        assert first.a == second.a
-        calls.append((start is there_on_it, first.a))
+        assert first.parameter("a") == second.parameter("a")
+        calls.append((start is there_on_it, first.parameter("a")))
         return None if calls[-1] == (True, 0.0) else near
 
     on_it, there_on_it = near.state(), far.state()

@@ -27,7 +27,7 @@ FOLD = 2.0 / np.sqrt(27.0)
 def where(continuation, branch):
     """Return the values of a at which a branch is known, and its attractors there."""
     pairs = [
-        (model.a, attractors[numbers.tolist().index(branch)])
+        (model.parameter("a"), attractors[numbers.tolist().index(branch)])
         for model, attractors, numbers in zip(
             continuation.models, continuation.attractors, continuation.branch, strict=True
         )
@@ -90,7 +90,7 @@ def test_a_branch_is_remembered_over_two_of_the_widest_steps(maps, grid, remembe
     model = replace(
         TWO_WELLS, map=lambda x, a: x + 0.5 * (mu(a) + x - x**3), slope=lambda x, a: 1.5 - 1.5 * np.square(x)
     )
-    continuation = continue_attractors([model.at(a) for a in grid], WELLS, refine=RefinementSettings(1.0))
+    continuation = continue_attractors([model.at(a=a) for a in grid], WELLS, refine=RefinementSettings(1.0))
     numbers = [
         {round(item.motion.state().position[0]): number for item, number in zip(attractors, branch, strict=True)}
         for attractors, branch in zip(continuation.attractors, continuation.branch, strict=True)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from burridge_knopoff import Chain, Model, MotionKind, law_of
+from burridge_knopoff import Model, MotionKind
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.continuation.matching import DistanceMatcher
 from burridge_knopoff.continuation.refinement import refine_searches
@@ -23,13 +23,15 @@ def values():
 
         class Scripted(Search):
             def find(self, starts, check=True):
-                calls.append((self.model.a, sorted(start.position[1] for start in starts), self.trials, check))
-                self.attractors = attractors(self.model.a)
+                calls.append(
+                    (self.model.parameter("a"), sorted(start.position[1] for start in starts), self.trials, check)
+                )
+                self.attractors = attractors(self.model.parameter("a"))
 
-        ends = [Scripted(Model(Chain(3), law_of("linearized", a)), attractors=attractors(a)) for a in (low, high)]
+        ends = [Scripted(Model("linearized", a=a), attractors=attractors(a)) for a in (low, high)]
         with parallel_map(1) as pool:
             (inner,) = refine_searches(ends, RefinementSettings(resolution), DistanceMatcher(), pool)
-        return [search.model.a for search in inner], calls
+        return [search.model.parameter("a") for search in inner], calls
 
     return insert_values
 

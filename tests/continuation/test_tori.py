@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff import BifurcationKind, Chain, Model, MotionKind, follow, law_of, limit_cycle, locate_bifurcations
+from burridge_knopoff import BifurcationKind, Model, MotionKind, follow, limit_cycle, locate_bifurcations
 from burridge_knopoff.attractors.settings import SEARCH
 from burridge_knopoff.continuation import tori
 from burridge_knopoff.continuation.followed_orbits import FollowedOrbits
@@ -25,9 +25,11 @@ END, BIRTH = 0.1122215462, 0.1123857856
 @pytest.fixture(scope="module")
 def end():
     """The grazing at which the orbit of one turn becomes an unstable focus."""
-    model = Model(Chain(3), law_of("linearized", 0.112))
+    model = Model("linearized", a=0.112)
     orbit = limit_cycle(model, model.begin(PAPER_STATES["minus"]), 8000.0)
-    (grazing,) = [item for item in locate_bifurcations(follow(orbit, (0.112, 0.1123))) if item.loses_stability]
+    (grazing,) = [
+        item for item in locate_bifurcations(follow(orbit, (0.112, 0.1123), parameter="a")) if item.loses_stability
+    ]
     return grazing
 
 
@@ -54,7 +56,7 @@ def test_the_motion_between_both_orbits_is_a_torus_with_its_tongues(end, points)
 
 def test_the_rotation_number_counts_the_oscillations_of_an_orbit(points):
     """At a = 0.112231 the orbit closes after 23 stops of block 1, whose positions there have four maxima."""
-    model = Model(Chain(3), law_of("linearized", points[0].a))
+    model = Model("linearized", a=points[0].a)
     runner = Runner(model, keep_events=True, events_from=30_000.0, stops_only=True)
     runner.begin(model.begin(PAPER_STATES["minus"]))
     runner.run(30_400.0)

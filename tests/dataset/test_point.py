@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff import simulate
+from burridge_knopoff import Model, simulate
 from burridge_knopoff.dataset.point import (
     POINT_VARIABLES,
     point_attributes,
@@ -22,7 +22,7 @@ from burridge_knopoff.dataset.point import (
     write_point,
 )
 from burridge_knopoff.dataset.variables import write_variables
-from burridge_knopoff.laws import FormulaLaw, law_of
+from burridge_knopoff.laws import FormulaLaw
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.running.trajectory import Trajectory
@@ -35,7 +35,7 @@ USUAL = {"coupling": 1.0, "threshold": 1.0, "mass": 1.0, "damping": 0.0, "pullin
 
 @pytest.fixture(scope="module")
 def trajectory():
-    return simulate("linearized", 0.08, "plus", transient=100.0, window=200.0, batches=4, event_window=50.0)
+    return simulate(Model("linearized", a=0.08), "plus", transient=100.0, window=200.0, batches=4, event_window=50.0)
 
 
 @pytest.fixture
@@ -83,7 +83,7 @@ def test_the_file_and_the_dataset_have_the_same_content(trajectory, path):
         ),
         # These names have other meanings in a file.
         (
-            {"formula": "1 - a*u + 0*(event + time + initial + mass)", "event": 1, "time": 2, "initial": 3, "mass": 4},
+            {"formula": "1 - a*u + 0*(event + time)", "event": 1, "time": 2},
             {"threshold": {"random": "uniform", "low": 0.9, "high": 1.1, "seed": 1}},
             {name: value for name, value in USUAL.items() if name != "threshold"},
         ),
@@ -92,7 +92,7 @@ def test_the_file_and_the_dataset_have_the_same_content(trajectory, path):
 def test_what_is_one_number_is_a_scalar_coordinate(tmp_path, law, chain, numbers):
     """In the file, in the Dataset, and in a file of an earlier version, which has attributes only."""
     own = InitialState("θ", (-0.9, -1.1, -1.0), 0.1)
-    run = simulate(law_of("mine", 0.08, law or {"law": "linearized"}), 0.08, own, chain=Chain(3, **chain), window=5.0)
+    run = simulate(Model({"mine": law or {"law": "linearized"}}, a=0.08, **chain), own, window=5.0)
     write_point(run, tmp_path / "new.nc")
     with netCDF4.Dataset(tmp_path / "old.nc", "w") as file:
         write_variables(file, POINT_VARIABLES, point_values(run), point_attributes(run))
@@ -129,7 +129,7 @@ def test_flags_keep_their_meanings():
 
 def test_events_of_the_whole_run(trajectory):
     """Earlier events, then those of the event window with their states, together the whole sequence."""
-    everything = simulate("linearized", 0.08, "plus", transient=100.0, window=200.0, batches=4, events="all")
+    everything = simulate(Model("linearized", a=0.08), "plus", transient=100.0, window=200.0, batches=4, events="all")
     time = np.concatenate([trajectory.earlier_event_time, trajectory.event_time])
     assert (time == everything.event_time).all()
     block = np.concatenate([trajectory.earlier_event_block, trajectory.event_block])
@@ -143,7 +143,7 @@ def test_events_of_the_whole_run(trajectory):
 
 
 def test_positions_are_relative_to_the_driver(trajectory):
-    first = simulate("linearized", 0.08, "plus", transient=0.0, window=20.0, trajectory=20.0)
+    first = simulate(Model("linearized", a=0.08), "plus", transient=0.0, window=20.0, trajectory=20.0)
     assert np.allclose(first.position[0], first.initial.position, atol=1e-14)
     assert (first.velocity[0] == first.initial.velocity).all()
     assert np.abs(trajectory.position).max() < 2.0
@@ -170,7 +170,7 @@ def test_history_is_the_command_that_makes_the_file(path, tmp_path):
 @pytest.mark.parametrize("exponents", [0, 2, 6])
 def test_history_states_the_number_of_exponents(tmp_path, exponents):
     settings = {"transient": 50.0, "window": 60.0, "lyapunov_exponents": exponents, "lyapunov_alignment": 12.5}
-    run = simulate("nonlinear", 0.1, "plus", **settings)
+    run = simulate(Model("nonlinear", a=0.1), "plus", **settings)
     write_point(run, tmp_path / "point.nc")
     with xr.open_dataset(tmp_path / "point.nc") as dataset:
         command = shlex.split(dataset.attrs["history"])
@@ -181,7 +181,9 @@ def test_history_states_the_number_of_exponents(tmp_path, exponents):
 
 
 def test_exponents_that_were_not_computed_are_nan(tmp_path):
-    write_point(simulate("linearized", 0.08, "plus", solver="rk4", step=0.1, window=50.0), tmp_path / "point.nc")
+    write_point(
+        simulate(Model("linearized", a=0.08), "plus", solver="rk4", step=0.1, window=50.0), tmp_path / "point.nc"
+    )
     with xr.open_dataset(tmp_path / "point.nc") as dataset:
         assert dataset["lyapunov_exponent"].shape == (3,)
         for name in ("lyapunov_exponent", "lyapunov_error", "batch_lyapunov_exponent"):
@@ -191,11 +193,11 @@ def test_exponents_that_were_not_computed_are_nan(tmp_path):
 
 @pytest.mark.slow
 def test_files_comply_with_cf(tmp_path):
-    law = FormulaLaw(0.08, "1 - c*tanh(a*u/c)", name="soft", c=0.1)
+    law = FormulaLaw("1 - c*tanh(a*u/c)", name="soft", a=0.08, c=0.1)
     files = [str(tmp_path / name) for name in ("open.nc", "ring.nc")]
     ring = Chain(3, (1.0, 2.0, 3.0), (0.5, 1.0, 0.5), (1.0, 2.0, 1.0), "ring")
     for chain, file in zip((None, ring), files, strict=True):
-        write_point(simulate(law, 0.08, "plus", chain=chain, transient=10.0, window=50.0), file)
+        write_point(simulate(Model(law, a=0.08, chain=chain), "plus", transient=10.0, window=50.0), file)
     checker = [str(Path(sys.executable).parent / "compliance-checker"), "--test=cf:1.11", "--criteria=strict"]
     run = subprocess.run([*checker, *files], capture_output=True, text=True, cwd=tmp_path)
     assert run.stdout.count("All tests passed!") == 2, run.stdout
@@ -205,13 +207,13 @@ def test_files_comply_with_cf(tmp_path):
 @pytest.mark.parametrize(("law", "a"), [("linearized", 0.08), ("nonlinear", 0.095), ("nonlinear", 0.25)])
 def test_a_default_point_is_small(tmp_path, law, a):
     """It is below 310 KB, also if the motion never repeats and does not compress."""
-    write_point(simulate(law, a, "plus"), tmp_path / "point.nc")
+    write_point(simulate(Model(law, a=a), "plus"), tmp_path / "point.nc")
     assert 50_000 < (tmp_path / "point.nc").stat().st_size < 310_000
 
 
 def test_a_run_that_did_not_complete_has_nan(tmp_path, monkeypatch):
     monkeypatch.setattr("burridge_knopoff.running.runner.STEP_LIMIT", 10)
-    write_point(simulate("linearized", 0.08, "plus"), tmp_path / "point.nc")
+    write_point(simulate(Model("linearized", a=0.08), "plus"), tmp_path / "point.nc")
     with xr.open_dataset(tmp_path / "point.nc") as dataset:
         meanings = dataset["status"].attrs["flag_meanings"].split()
         assert meanings[dataset["status"].item()] == "step_limit"
@@ -232,5 +234,5 @@ def test_provenance_names_sources_but_no_person(path):
 
 @pytest.mark.parametrize(("solver", "steps"), [("series", False), ("rk4", True)])
 def test_only_a_run_in_steps_has_a_step(solver, steps):
-    run = simulate("linearized", 0.08, "plus", solver=solver, transient=0.0, window=5.0)
+    run = simulate(Model("linearized", a=0.08), "plus", solver=solver, transient=0.0, window=5.0)
     assert ("step" in point_attributes(run)) == steps

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff import Chain, InitialState, Model, law_of, record_events, simulate
+from burridge_knopoff import InitialState, Model, record_events, simulate
 from burridge_knopoff.figures import (
     agreement,
     attractor_kinds,
@@ -159,7 +159,7 @@ def test_cycles_of_runs_without_stops_say_so(stuck, said):
 
 def chain_events(a: float, end: float) -> xr.Dataset:
     """Return a catalogue of three blocks: at a = 1.9, where friction turns into a push, they reach any speed."""
-    model = Model(Chain(3), law_of("linearized", a), v=0.1, contact="symmetric")
+    model = Model("linearized", a=a, v=0.1, contact="symmetric")
     return record_events(model, model.begin(InitialState("own", (-0.9, -0.8, -1.0), 0.1)), end).to_dataset()
 
 
@@ -192,7 +192,7 @@ def test_a_catalogue_that_diverged_is_named_among_others():
 
 
 def test_the_motion_of_a_run_that_diverged_says_so():
-    run = simulate("linearized", 1.9, "minus", contact="symmetric", transient=0.0, window=1000.0)
+    run = simulate(Model("linearized", a=1.9, contact="symmetric"), "minus", transient=0.0, window=1000.0)
     said = "the run did not complete:\ndiverged at $\\tau=22.48$"
     for panels in (motion.draw({"minus": run.to_dataset()}).axes[:2], run.plot().axes[1:]):
         assert [(panel.axison, panel.texts[0].get_text()) for panel in panels] == [(False, said)] * len(panels)

@@ -58,4 +58,4 @@ def test_the_legend_of_the_laws_has_their_formulas_and_numbers():
     assert entries[2].startswith("own: Φ = 1 - $c$*tanh($a$*$u$/$c$)")
     assert entries[2].count("\n") == 2
     assert entries[-1] == "stuck block"
-    assert law_of("own", 0.1, {"formula": "1 - c*u", "c": 0.1}).words.count("c = 0.1") == 1
+    assert law_of({"own": {"formula": "1 - c*u", "c": 0.1}}).words.count("c = 0.1") == 1

@@ -4,7 +4,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from burridge_knopoff import simulate
+from burridge_knopoff import Model, simulate
 from burridge_knopoff.figures import distance, motion
 from burridge_knopoff.figures.style import write_figure
 from tests.conftest import quick_first
@@ -12,7 +12,7 @@ from tests.conftest import quick_first
 
 @pytest.fixture(scope="module")
 def point():
-    return simulate("linearized", 0.08, "plus", transient=50.0, window=50.0, batches=2).to_dataset()
+    return simulate(Model("linearized", a=0.08), "plus", transient=50.0, window=50.0, batches=2).to_dataset()
 
 
 def test_motion_draws_every_block_in_a_style_that_is_nobody_elses(point):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Model
 from burridge_knopoff.figures import mean_distance
 from burridge_knopoff.figures.orbits import draw
 from burridge_knopoff.study.paper import PAPER_LAWS
@@ -13,7 +13,7 @@ from burridge_knopoff.summaries.orbits import summarize
 
 
 def test_that_there_are_none_is_said():
-    figure = draw(summarize([Model(Chain(2), law_of(law, 0.1)) for law in PAPER_LAWS], [0.1]), xr.Dataset())
+    figure = draw(summarize([Model(law, a=0.1, blocks=2) for law in PAPER_LAWS], [0.1]), xr.Dataset())
     assert [panel.texts[0].get_text() for panel in figure.axes] == ["no synchronized orbit"] * 4
 
 
@@ -38,7 +38,7 @@ RUN = {"mean_distance": 0.1, "mean_distance_error": 0.001, "least_friction": 0.9
     ],
 )
 def test_the_end_of_synchrony_is_drawn_where_the_orbit_attracts(stability, styles, marked):
-    orbits = summarize([Model(Chain(3), law_of("linearized", 0.1))], [0.02, 0.14])
+    orbits = summarize([Model("linearized", a=0.1)], [0.02, 0.14])
     assert orbits["critical_stability"].item() == CriticalStability.LOST
     orbits["critical_stability"].values[:] = stability
     runs = runs_at([0.02, 0.14])
@@ -50,7 +50,7 @@ def test_the_end_of_synchrony_is_drawn_where_the_orbit_attracts(stability, style
 
 
 def test_the_transverse_multiplier_passes_1_at_the_loss_of_synchrony():
-    orbits = summarize([Model(Chain(3), law_of("linearized", 0.1))], [0.02, 0.14])
+    orbits = summarize([Model("linearized", a=0.1)], [0.02, 0.14])
     figure = draw(orbits, runs_at([0.02, 0.14]))
     curve, _, dot = figure.axes[0].get_lines()[:3]
     assert (dot.get_xdata()[0], dot.get_ydata()[0]) == (orbits["critical_a"].item(), 1.0)

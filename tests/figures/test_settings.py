@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from burridge_knopoff import simulate
+from burridge_knopoff import Model, simulate
 from burridge_knopoff.dataset.point import to_dataset, write_point
 from burridge_knopoff.figures import motion
 from burridge_knopoff.figures.style import write_figure
@@ -47,7 +47,7 @@ OWN = {
 
 @pytest.fixture(scope="module")
 def run():
-    return simulate("linearized", 0.08, "plus", transient=50.0, window=50.0, batches=2)
+    return simulate(Model("linearized", a=0.08), "plus", transient=50.0, window=50.0, batches=2)
 
 
 @pytest.mark.slow

@@ -6,8 +6,6 @@ from hypothesis import strategies as st
 
 from burridge_knopoff.dataset.point import POINT_VARIABLES, write_point
 from burridge_knopoff.dataset.run import open_run
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.bad_file import BadFile
@@ -36,7 +34,7 @@ class Points:
         self.path = folder / "fuzzed.nc"
         self.content = []
         for a in (0.2, 0.08):
-            model = Model(Chain(3), law_of("linearized", a))
+            model = Model("linearized", a=a)
             write_point(run(model, STATE, SETTINGS), self.path)
             self.content.insert(0, self.path.read_bytes())
         self.command = simulate_command(model, STATE, SETTINGS)

@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 from burridge_knopoff.cli import main
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.settings import Settings
@@ -132,8 +131,8 @@ def test_a_run_is_refused_or_ends_with_a_status(seed):
     try:
         with np.errstate(all="ignore"):
             state = InitialState("fuzzed", case["position"], case["velocity"])
-            law = law_of("fuzzed", case["a"], case["law"])
-            model = Model(Chain(case["blocks"], **case["chain"]), law, case["v"], case["contact"])
+            law = law_of({"fuzzed": case["law"]}, a=case["a"])
+            model = Model(law, blocks=case["blocks"], **case["chain"], v=case["v"], contact=case["contact"])
             if case["stuck"]:
                 begun, stuck = model.begin(state), np.array(case["stuck"])
                 state = ChainState(begun.position, np.where(stuck, 0.0, begun.velocity), stuck)
@@ -147,8 +146,8 @@ def test_a_run_is_refused_or_ends_with_a_status(seed):
 def check_trajectory(trajectory, case):
     """Require a status, and arrays of the right lengths with finite values in order, or NaN for unknown values."""
     model, settings, n = trajectory.model, trajectory.settings, trajectory.model.blocks
-    assert model.a >= 0.0
-    assert (model.a, model.v, model.contact) == (case["a"], case["v"], case["contact"])
+    assert model.parameter("a") >= 0.0
+    assert (model.parameter("a"), model.v, model.contact) == (case["a"], case["v"], case["contact"])
     for key, value in case["settings"].items():
         assert not isinstance(value, float) or math.isfinite(value), key
         assert getattr(settings, key) == value, key

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from mpmath import mp
 
-from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff import ChainState, Model
 from burridge_knopoff.kernel._core import Catalogue
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
@@ -63,7 +63,7 @@ def test_one_block_in_closed_form(v, a):
         slip = y(duration)
         peak = mp.diff(y, first(lambda t: mp.diff(y, t, 2)))
         slip, duration, peak = float(slip), float(duration), float(peak)
-    model = Model(Chain(1, pulling=1.0), law_of("linearized", a), v)
+    model = Model("linearized", a=a, blocks=1, pulling=1.0, v=v)
     table, _, _ = record_catalogue(model, at_rest(model, spread=0.0), 0.2 / v + 5.5 * max(slip / v, duration))
     assert len(table["time"]) >= 5
     assert np.allclose(table["moment"], slip, rtol=1e-12, atol=1e-15)
@@ -82,7 +82,7 @@ def test_one_block_in_closed_form(v, a):
 @pytest.mark.parametrize("law", ["nonlinear", "carlson_langer"])
 def test_forces_and_displacements_balance(law, groups):
     """The slips of each block add up to its displacement."""
-    model = Model(Chain(12, coupling=5.0, pulling=1.0), law_of(law, 1.0), 0.02)
+    model = Model(law, a=1.0, blocks=12, coupling=5.0, pulling=1.0, v=0.02)
     start = at_rest(model)
     end = last_rest(model, start, 120.0)
     table, runner, (ends, block, slip, _) = record_catalogue(model, start, end, groups)
@@ -98,7 +98,7 @@ def test_forces_and_displacements_balance(law, groups):
 @pytest.mark.slow
 def test_energy_is_the_work_of_friction():
     """The work is computed by quadrature of friction times speed along the whole motion, between two times of rest."""
-    model = Model(Chain(6, coupling=2.0, pulling=1.0), law_of("nonlinear", 0.5), 0.01)
+    model = Model("nonlinear", a=0.5, blocks=6, coupling=2.0, pulling=1.0, v=0.01)
     start = at_rest(model)
     end = last_rest(model, start, 400.0)
     runner = Runner(model, keep_events=True)
@@ -119,7 +119,7 @@ def test_energy_is_the_work_of_friction():
 
 
 def test_a_catalogue_does_not_depend_on_where_runs_are_divided():
-    model = Model(Chain(30, coupling=20.0, pulling=1.0), law_of("carlson_langer", 3.0), 0.01)
+    model = Model("carlson_langer", a=3.0, blocks=30, coupling=20.0, pulling=1.0, v=0.01)
     start = at_rest(model)
     whole, _, _ = record_catalogue(model, start, 150.0)
     parts, _, _ = record_catalogue(model, start, 150.0, stops=(10.0, 33.3, 90.1))
@@ -131,7 +131,7 @@ def test_a_catalogue_does_not_depend_on_where_runs_are_divided():
 
 def test_groups_and_the_chain_as_a_whole_have_the_same_events():
     """They have the same events until chaos makes them diverge."""
-    model = Model(Chain(12, coupling=5.0, pulling=1.0), law_of("carlson_langer", 1.0), 0.02)
+    model = Model("carlson_langer", a=1.0, blocks=12, coupling=5.0, pulling=1.0, v=0.02)
     grouped, ungrouped = (record_catalogue(model, at_rest(model), 60.0, groups)[0] for groups in (True, False))
     assert len(grouped["time"]) >= 8
     for name, values in grouped.items():
@@ -163,7 +163,7 @@ def events_of_starts_and_stops(model, log):
 @pytest.mark.parametrize("blocks", [23, 24])
 @pytest.mark.parametrize("groups", [False, True])
 def test_onsets_are_those_of_the_starts(blocks, groups, loading):
-    model = Model(Chain(blocks, coupling=9.0, pulling=1.0), law_of("carlson_langer", 3.0), 0.02)
+    model = Model("carlson_langer", a=3.0, blocks=blocks, coupling=9.0, pulling=1.0, v=0.02)
     _, runner, (ends, block, _, onset) = record_catalogue(model, at_rest(model), 250.0, groups, loading=loading)
     events = events_of_starts_and_stops(model, runner.events())
     assert len(events) == len(ends) > 100
@@ -177,7 +177,7 @@ def test_onsets_are_those_of_the_starts(blocks, groups, loading):
 
 def test_connection_decides():
     """Two blocks far apart that slip at the same time are two events."""
-    model = Model(Chain(9, coupling=0.2, pulling=1.0), law_of("nonlinear", 0.3), 0.05)
+    model = Model("nonlinear", a=0.3, blocks=9, coupling=0.2, pulling=1.0, v=0.05)
     position = np.full(9, -0.5)
     position[[1, 7]] = -0.999
     start = ChainState(position - model.sliding_offset, np.zeros(9), np.ones(9, dtype=bool))

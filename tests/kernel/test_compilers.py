@@ -36,13 +36,13 @@ CHAINS = (
 )
 # Without exp, log and fractional powers, whose last bit depends on the C library.
 LAWS = (
-    law_of("linearized", 0.2),
-    law_of("nonlinear", 0.3),
-    law_of("carlson_langer", 3.0),
-    FormulaLaw(0.3, "(1+a*u)**-2"),
+    law_of("linearized", a=0.2),
+    law_of("nonlinear", a=0.3),
+    law_of("carlson_langer", a=3.0),
+    FormulaLaw("(1+a*u)**-2", a=0.3),
 )
 CASES = [
-    Model(chain, law, contact=contact)
+    Model(law, chain=chain, contact=contact)
     for chain in CHAINS
     for law, contact in zip(LAWS, ("one_sided", "symmetric") * 2, strict=True)
 ]

@@ -28,9 +28,9 @@ def state_at(model, position, displacement, groups=False):
 @GROUPS
 def test_one_overdamped_block_slips_once_and_then_creeps(v, drag, groups):
     """u'' + (c − a) u' + u = 0 with c − a ≥ 2: its force stays at θ Φ(0), and its slip event never ends."""
-    law = law_of("carlson_langer", 0.5, {"sigma": 0.2})
+    law = law_of("carlson_langer", a=0.5, sigma=0.2)
     assert float(law.slope(0.0)) == -0.5
-    model = Model(Chain(1, pulling=1.0, pulling_damping=drag + 0.5), law, v)
+    model = Model(law, blocks=1, pulling=1.0, pulling_damping=drag + 0.5, v=v)
     table, runner, _ = record_catalogue(model, resting(model, [-0.9]), 3.0 / v, groups, loading="quasistatic")
     assert len(table["time"]) == 0
     assert runner.state().stuck.tolist() == [False]
@@ -41,7 +41,7 @@ def test_friction_that_grows_with_speed_damps_as_a_dashpot():
     """Φ = 0.9 + u resists like a dashpot of 1: 2.5 times that overdamps, and 0.5 times does not."""
     for formula, weakening in (("0.9 + a*u", 1.0), ("0.9 - a*u", -1.0)):
         for a, events in ((2.5, 0), (0.5, 21)):
-            model = Model(Chain(1, pulling=1.0, weakening=weakening), FormulaLaw(a, formula), 0.1)
+            model = Model(FormulaLaw(formula, a=a), blocks=1, pulling=1.0, weakening=weakening, v=0.1)
             assert len(record_events(model, resting(model, [-0.9]), 30.0, loading="quasistatic").time) == events
 
 
@@ -70,11 +70,11 @@ def first_changes(seed, form, drag, contact, groups):
     generator = np.random.default_rng(seed)
     chain = dashed(form, generator, drag)
     chain = replace(chain, threshold=1e3)
-    law = law_of("carlson_langer", 1e-3 * generator.uniform(0.1, 1.0), {"sigma": 0.05})
+    law = law_of("carlson_langer", a=1e-3 * generator.uniform(0.1, 1.0), sigma=0.05)
     position = 1e3 * generator.uniform(-0.5, -0.4, chain.blocks)
     changes = []
     for v, loading in ((1.0, "quasistatic"), (1e-3, "steady"), (1e-4, "steady")):
-        model = Model(chain, law, v, contact)
+        model = Model(law, chain=chain, v=v, contact=contact)
         _, runner, _ = record_catalogue(model, resting(model, position), 600.0 / v, groups, loading=loading)
         changes.append(list(zip(*runner.events()[1:], strict=True)))
     quasistatic, slow, slower = changes
@@ -128,7 +128,7 @@ def creeping(displacement):
     generator = np.random.default_rng(4)
     damping, pulling = generator.uniform(5.0, 8.0, 5), generator.uniform(0.5, 1.0, 6)
     chain = Chain(6, coupling=tuple(generator.uniform(3.0, 4.0, 5)), pulling=tuple(pulling), damping=tuple(damping))
-    model = Model(chain, law_of("carlson_langer", 0.5, {"sigma": 0.1}), 1.0)
+    model = Model("carlson_langer", a=0.5, sigma=0.1, chain=chain, v=1.0)
     start = -0.9 / np.array(pulling) + np.array([0.0, 0.0, 0.05, 0.0, 0.05, 0.05])
     return model, start, state_at(model, start, displacement)
 
@@ -186,7 +186,7 @@ def test_creep_removes_perturbations():
     coupling, damping = 9.0 * generator.uniform(0.5, 1.5, 3), 6.0 * generator.uniform(0.5, 1.5, 3)
     mass = generator.uniform(0.7, 1.4, (2, 4))[1]
     chain = Chain(4, coupling=tuple(coupling), pulling=1.0, damping=tuple(damping), mass=tuple(mass))
-    model = Model(chain, law_of("carlson_langer", 1.0, {"sigma": 0.05}), 1.0)
+    model = Model("carlson_langer", a=1.0, sigma=0.05, chain=chain, v=1.0)
     start = resting(model, generator.uniform(-0.6, -0.5, 4))
     spectrum = event_exponents(model, start, 40.0, begin=5.0, count=4)
     assert 1 < np.isinf(spectrum.exponent).sum() < 4
@@ -198,7 +198,7 @@ def test_v_only_scales_the_loading_clock(groups):
     rough = InitialState("rough", {"random": "uniform", "low": -0.62, "high": -0.6, "seed": 3}, 0.0)
     tables = []
     for v in (1.0, 1e-3):
-        model = Model(chain, law_of("carlson_langer", 0.5, {"sigma": 0.05}), v)
+        model = Model("carlson_langer", a=0.5, sigma=0.05, chain=chain, v=v)
         start = model.begin(rough, "tested", "quasistatic")
         assert start.stuck.all()
         table, _, _ = record_catalogue(model, start, 0.5 / v, groups, loading="quasistatic")
@@ -209,7 +209,7 @@ def test_v_only_scales_the_loading_clock(groups):
 
 @pytest.mark.parametrize("v", [1.0, 1e-3])
 def test_a_driver_at_rest_pulls_by_no_dashpot(v):
-    model = Model(Chain(1, pulling=1.0, pulling_damping=0.5), law_of("carlson_langer", 3.0), v)
+    model = Model("carlson_langer", a=3.0, blocks=1, pulling=1.0, pulling_damping=0.5, v=v)
     state = InitialState("own", (-0.9,), (v,))
     assert model.begin(state, "tested").stuck.tolist() == [v < 0.1]
     start = model.begin(state, "tested", "quasistatic")
@@ -220,7 +220,7 @@ def test_a_driver_at_rest_pulls_by_no_dashpot(v):
 def overdamped(blocks):
     """Return a row in which single blocks and pairs creep, and a rough state of rest."""
     chain = Chain(blocks, coupling=9.0, pulling=1.0, damping=8.0, pulling_damping=0.5)
-    model = Model(chain, law_of("carlson_langer", 2.0, {"sigma": 0.05}), 0.01)
+    model = Model("carlson_langer", a=2.0, sigma=0.05, chain=chain, v=0.01)
     return model, resting(model, np.random.default_rng(blocks).uniform(-0.7, -0.6, blocks))
 
 
@@ -291,12 +291,12 @@ def test_work_of_the_springs_balances(groups):
 @pytest.mark.parametrize("v", [1e-3, 1e-4, 1e-5])
 def test_a_block_without_a_spring_to_the_driver_does_not_stop_by_rounding(v):
     """Behind a driver that moves too, its speed tends to 0 while its neighbours stick."""
-    law = law_of("carlson_langer", 0.5, {"sigma": 0.1})
+    law = law_of("carlson_langer", a=0.5, sigma=0.1)
     for pulling, drag, position in (((1.0, 0.0), (0.0, 4.0), (0.0, -0.5)), ((1.0, 0.0, 0.0), (0.0, 3.0, 3.0), None)):
         chain = Chain(len(pulling), coupling=1.0, pulling=pulling, pulling_damping=drag)
         tables = []
         for speed, loading in ((1.0, "quasistatic"), (v, "steady")):
-            model = Model(chain, law, speed)
+            model = Model(law, chain=chain, v=speed)
             start = resting(model, position or (-0.5, -1.2, -1.8))
             tables.append(record_events(model, start, 8.0 / speed, loading=loading))
         assert len(tables[0].time) == len(tables[1].time) > 2

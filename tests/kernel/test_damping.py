@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from burridge_knopoff import Chain, ChainState, InitialState, Model, Settings, law_of, record_events, simulate
+from burridge_knopoff import Chain, ChainState, InitialState, Model, Settings, record_events, simulate
 from burridge_knopoff.model.model import CONTACTS
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
@@ -25,7 +25,7 @@ def test_one_block_in_closed_form(c, mass):
     """It starts at y = U − vτ = −(θ − c v)/D, and then m y'' = −D y − c y' − θ + a (y' + v) until y' = −v."""
     a, v, pulling, threshold = 0.3, 0.1, 0.7, 1.3
     chain = Chain(1, pulling=pulling, threshold=threshold, mass=mass, pulling_damping=c)
-    model = Model(chain, law_of("linearized", a), v)
+    model = Model("linearized", a=a, chain=chain, v=v)
     # Of z = y − e, z'' = −(D/m) z − ((c − θ a)/m) z'; c = 3 overdamps.
     rate, square = 0.5 * (c - threshold * a) / mass, pulling / mass
     omega = np.emath.sqrt(square - rate**2)
@@ -72,7 +72,7 @@ def test_dashpots_in_proportion_to_masses_only_lower_a(blocks, contact):
     )
     rows = []
     for c, a in ((gamma, 0.2 + gamma), (0.0, 0.2)):
-        model = Model(Chain(blocks, pulling_damping=c), law_of("linearized", a), contact=contact)
+        model = Model("linearized", a=a, blocks=blocks, pulling_damping=c, contact=contact)
         runner = Runner(model, keep_events=True)
         runner.begin(start)
         assert runner.run(15.0) == Status.COMPLETED
@@ -88,7 +88,7 @@ def test_balance_of_work_friction_and_dashpots(groups):
     """The dissipation by friction and by each dashpot is integrated between two times of rest."""
     damping = np.array([0.3, 0.0, 0.1, 0.2, 0.5])
     chain = Chain(6, coupling=2.0, pulling=1.0, damping=damping, pulling_damping=0.05)
-    model = Model(chain, law_of("nonlinear", 1.5), 0.02)
+    model = Model("nonlinear", a=1.5, chain=chain, v=0.02)
     start = at_rest(model)
     end = last_rest(model, start, 120.0)
     table, runner, _ = record_catalogue(model, start, end, groups)
@@ -113,7 +113,7 @@ def test_balance_of_work_friction_and_dashpots(groups):
 
 def test_energies_of_fixed_steps_converge():
     """The energies of rk4, whose events are at ends of steps, converge to those of `series`."""
-    model = Model(Chain(3, coupling=2.0, pulling=1.0, damping=0.3, pulling_damping=0.1), law_of("nonlinear", 0.8), 0.05)
+    model = Model("nonlinear", a=0.8, coupling=2.0, pulling=1.0, damping=0.3, pulling_damping=0.1, v=0.05)
     start = at_rest(model)
     exact = record_events(model, start, 30.0)
     errors = []
@@ -128,11 +128,11 @@ def test_energies_of_fixed_steps_converge():
 def test_quasistatic_loading_is_the_limit_of_a_slow_driver(groups):
     """Quasi-statically, the driver does no work while blocks slip."""
     chain = Chain(5, coupling=2.0, pulling=1.0, damping=0.4, pulling_damping=0.2)
-    start = at_rest(Model(chain, law_of("carlson_langer", 1.0), 0.01))
+    start = at_rest(Model("carlson_langer", a=1.0, chain=chain, v=0.01))
     columns = []
     for v, loading in ((0.01, "quasistatic"), (2e-6, "steady")):
-        model = Model(chain, law_of("carlson_langer", 1.0), v)
-        position = start.position + Model(chain, model.law, 0.01).sliding_offset - model.sliding_offset
+        model = Model("carlson_langer", a=1.0, chain=chain, v=v)
+        position = start.position + Model(model.law, chain=chain, v=0.01).sliding_offset - model.sliding_offset
         again = ChainState(position, start.velocity, start.stuck)
         catalogue = record_catalogue(model, again, 0.5 / v, groups, loading=loading)[0]
         names = ("duration", "moment", "peak_velocity", "stress_drop", "energy_released", "energy_damped")
@@ -145,7 +145,7 @@ def test_quasistatic_loading_is_the_limit_of_a_slow_driver(groups):
 def test_a_neighbour_pulls_on_a_stuck_block_by_its_dashpot():
     """It starts where the whole force passes its threshold, and `start: tested` asks for the same force."""
     c, state = 2.0, InitialState("own", (-0.85, -1.1), (0.05, 0.3))
-    model = Model(Chain(2, pulling=1.0, damping=c), law_of("nonlinear", 0.3), 0.1)
+    model = Model("nonlinear", a=0.3, blocks=2, pulling=1.0, damping=c, v=0.1)
     spring = model.chain.force(np.array(state.position))
     assert spring[0] < 1.0 < spring[0] + c * 0.3
     assert spring[1] > 1.0
@@ -161,7 +161,7 @@ def test_a_neighbour_pulls_on_a_stuck_block_by_its_dashpot():
     assert runner.run(0.1) == Status.COMPLETED
     assert [row[:1].tolist() for row in runner.events()] == [[0.0], [0], [1]]
     # A dashpot to the driver pulls by c v.
-    towed = Model(Chain(1, pulling=1.0, pulling_damping=c), law_of("nonlinear", 0.3), 0.1)
+    towed = Model("nonlinear", a=0.3, blocks=1, pulling=1.0, pulling_damping=c, v=0.1)
     for position, stuck in ((-0.79, True), (-0.81, False)):
         assert towed.begin(InitialState("own", (position,), (0.0,)), "tested").stuck.tolist() == [stuck]
 
@@ -169,7 +169,7 @@ def test_a_neighbour_pulls_on_a_stuck_block_by_its_dashpot():
 @pytest.mark.parametrize("contact", CONTACTS)
 def test_the_least_force_is_that_of_springs_and_dashpots(contact):
     chain = Chain(3, coupling=1.5, damping=0.4, pulling_damping=0.1)
-    model = Model(chain, law_of("nonlinear", 0.3), contact=contact)
+    model = Model("nonlinear", a=0.3, chain=chain, contact=contact)
     run = simulate(model, transient=0.0, window=40.0, trajectory=40.0, trajectory_sampling=1e-3, lyapunov_exponents=0)
     force = chain.force(run.position) + 0.1 * 0.1 - run.velocity @ chain.damping_matrix.T
     assert run.least_spring_force == pytest.approx(force[run.velocity == 0.0].min(), abs=2e-3)
@@ -180,7 +180,7 @@ def test_the_least_force_is_that_of_springs_and_dashpots(contact):
 def test_growth_of_uniform_sliding(law, ends):
     """The eigenvalues of its Jacobian are those of the tangent map."""
     chain = Chain(5, damping=0.02, pulling_damping=0.01, mass=(1.0, 2.0, 1.0, 0.5, 1.0), ends=ends)
-    model = Model(chain, law_of(law, 0.1))
+    model = Model(law, a=0.1, chain=chain)
     start = ChainState(np.zeros(5), np.full(5, model.v), np.zeros(5, dtype=bool))
     rates = np.log(np.linalg.eigvals(carry(model, start, 0.5, directions(start))[0].perturbations)) / 0.5
     expected = eigenvalues(model)
@@ -192,7 +192,7 @@ def test_damping_scales_with_springs_and_masses():
     chain = Chain(3, damping=0.3, pulling_damping=(0.1, 0.0, 0.2))
     other = Chain(3, 2.0, (2.0, 4.0, 2.0), mass=2.0, threshold=2.0, damping=0.6, pulling_damping=(0.2, 0.0, 0.4))
     runs = [
-        simulate(Model(form, law_of("nonlinear", 0.2)), initial="plus", transient=0, window=60, lyapunov_exponents=0)
+        simulate(Model("nonlinear", a=0.2, chain=form), initial="plus", transient=0, window=60, lyapunov_exponents=0)
         for form in (chain, other)
     ]
     assert runs[0].event_count > 10
@@ -202,11 +202,11 @@ def test_damping_scales_with_springs_and_masses():
 def test_the_closed_form_is_refused():
     for dashpots in ({"damping": 0.1}, {"pulling_damping": (0.0, 0.1, 0.0)}):
         with refused("solver: 'map'", "dashpots"):
-            simulate(Model(Chain(3, **dashpots), law_of("linearized", 0.1)), initial="plus", solver="map")
+            simulate(Model("linearized", a=0.1, blocks=3, **dashpots), initial="plus", solver="map")
 
 
 def test_long_steps_are_refused():
     """A dashpot damps faster than a spring pulls."""
-    model = Model(Chain(3, damping=100.0), law_of("linearized", 0.1))
+    model = Model("linearized", a=0.1, damping=100.0)
     with refused("step: 0.001"):
         simulate(model, initial="plus", solver="rk4", settings=Settings(solver="rk4"))

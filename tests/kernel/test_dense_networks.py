@@ -5,7 +5,7 @@ import time
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff import Chain, ChainState, Model
 from burridge_knopoff.kernel._core import Catalogue, Exponents, run_in_lockstep
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
@@ -46,7 +46,7 @@ def rest(model, seed=1):
 
 
 def model_of(chain, v=0.01):
-    return Model(chain, law_of("carlson_langer", 2.0, {"sigma": 0.2}), v)
+    return Model("carlson_langer", a=2.0, sigma=0.2, chain=chain, v=v)
 
 
 def run(model, start, end, **options):

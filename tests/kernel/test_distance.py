@@ -7,17 +7,17 @@ import pytest
 from mpmath import mp
 from scipy.integrate import quad
 
-from burridge_knopoff import InitialState, simulate
+from burridge_knopoff import InitialState, Model, simulate
 from burridge_knopoff.kernel._core import quadrature
 
 
 def test_mean_distance_is_exact_to_rounding():
     """⟨J⟩ against the quadrature of the same run cut into its smooth pieces, each by adaptive Gauss-Kronrod."""
     options = {"transient": 0.0, "trajectory": 0.0}
-    run = simulate("linearized", 0.2, "plus", window=15.0, batches=5, events="all", **options)
+    run = simulate(Model("linearized", a=0.2), "plus", window=15.0, batches=5, events="all", **options)
 
     def distance(tau):
-        state = simulate("linearized", 0.2, "plus", window=tau, batches=2, events="none", **options)
+        state = simulate(Model("linearized", a=0.2), "plus", window=tau, batches=2, events="none", **options)
         return float(np.hypot(*(part[-1, 2] - part[-1, 0] for part in (state.position, state.velocity))))
 
     edges = np.unique(np.concatenate([[1e-3], run.event_time[run.event_time > 1e-3], [15.0]]))
@@ -34,7 +34,7 @@ def test_mean_distance_has_a_closed_form_before_any_event():
     a = 0.1
     sliding = -(1.0 - a * 0.1)
     state = InitialState("near", (sliding - 0.01, sliding + 0.02), (0.1, 0.13))
-    run = simulate("linearized", a, state, transient=0.0, window=3.0, batches=3, events="all")
+    run = simulate(Model("linearized", a=a, blocks=2), state, transient=0.0, window=3.0, batches=3, events="all")
     assert run.event_count == 0
     with mp.workdps(30):
         d0, r0 = (mp.mpf(last) - mp.mpf(first) for first, last in (state.position, state.velocity))

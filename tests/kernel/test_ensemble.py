@@ -49,13 +49,13 @@ def check_against_scalar(model, ensemble, count, end, start=None, tolerance=0.0)
 @pytest.mark.parametrize("blocks", [2, 3, 5, 8])
 @pytest.mark.parametrize("a", [0.02, 0.08, 0.3])
 def test_events_of_random_states(law, blocks, contact, a):
-    model = Model(Chain(blocks), law_of(law, a), 0.1, contact)
+    model = Model(law, a=a, blocks=blocks, v=0.1, contact=contact)
     assert check_against_scalar(model, new_ensemble(model), 40, 12.0) > 100
 
 
 def test_a_block_that_is_pulled_back_from_its_threshold_starts_and_stops_once():
     """Rounding may leave its force beyond the threshold, which must not start it again and again."""
-    model = Model(Chain(3), law_of("nonlinear", 0.1), contact="symmetric")
+    model = Model("nonlinear", a=0.1, contact="symmetric")
     position = np.array([[0.2, (0.2 + 0.3 - 1.0) / 4.0, 0.3]] * 40) - model.sliding_offset
     position[:, 1] -= 2.0**-54 * np.arange(2, 42)
     # Its neighbours slip backward, so that its force falls.
@@ -65,7 +65,7 @@ def test_a_block_that_is_pulled_back_from_its_threshold_starts_and_stops_once():
 
 @pytest.mark.parametrize("v", [0.003, 0.5])
 def test_slow_and_fast_drivers(v):
-    model = Model(Chain(3), law_of("nonlinear", 0.1), v)
+    model = Model("nonlinear", a=0.1, v=v)
     assert check_against_scalar(model, new_ensemble(model), 20, 1.0 / v) > 50
 
 
@@ -74,7 +74,7 @@ def test_slow_and_fast_drivers(v):
     ["(1 + a*u)**-1.5*sqrt(1 + a*u)", "exp(-log(1 + a*u))", "((1 + a*u)**-0.5)**2", "2/(1 + a*u) - 1/(1 + a*u)"],
 )
 def test_one_law_in_other_operations(formula):
-    model, other = (Model(Chain(3), law) for law in (law_of("nonlinear", 0.3), FormulaLaw(0.3, formula)))
+    model, other = (Model(law) for law in (law_of("nonlinear", a=0.3), FormulaLaw(formula, a=0.3)))
     assert check_against_scalar(model, new_ensemble(other), 30, 10.0, tolerance=2e-12) > 100
 
 
@@ -86,7 +86,9 @@ def test_unequal_springs_and_thresholds_and_a_drop_at_the_start(drop, ends, seed
     generator = np.random.default_rng(seed)
     coupling = generator.uniform(0.5, 1.5, 4 if ends == "ring" else 3)
     pulling, threshold = generator.uniform(0.5, 1.5, 4), generator.uniform(0.8, 1.2, 4)
-    model = Model(Chain(4, coupling, pulling, threshold, ends), FormulaLaw(0.5, "(1 - drop)*exp(-a*u)", drop=drop))
+    model = Model(
+        FormulaLaw("(1 - drop)*exp(-a*u)", a=0.5, drop=drop), chain=Chain(4, coupling, pulling, threshold, ends)
+    )
     position, velocity = generator.uniform(-0.4, 0.4, (2, 4)), generator.uniform(0.05, 0.2, (2, 4))
     results = new_ensemble(model).run(position, velocity, np.zeros((2, 4)), [12.0], events=100)
     for k in range(2):
@@ -103,7 +105,7 @@ def members(result, order=slice(None)):
 @pytest.fixture(params=[("linearized", 3, "one_sided"), ("nonlinear", 5, "one_sided"), ("nonlinear", 3, "symmetric")])
 def model(request):
     law, blocks, contact = request.param
-    return Model(Chain(blocks), law_of(law, 0.2), 0.1, contact)
+    return Model(law, a=0.2, blocks=blocks, v=0.1, contact=contact)
 
 
 def test_no_lane_depends_on_another(model):
@@ -163,7 +165,7 @@ def test_blocks_below_their_backward_thresholds_start_backward():
     backward = 0
     for seed in range(4):
         threshold = np.random.default_rng(seed).uniform(0.4, 2.0, 4)
-        model = Model(Chain(4, 3.0, 0.5, threshold), law_of("nonlinear", 0.3), 0.1, "symmetric")
+        model = Model("nonlinear", a=0.3, chain=Chain(4, 3.0, 0.5, threshold), v=0.1, contact="symmetric")
         position, velocity, stuck = states(model, 40)
         start, ensemble = (2.0 * position, velocity, stuck), new_ensemble(model)
         assert check_against_scalar(model, ensemble, 40, 12.0, start) > 100
@@ -177,7 +179,7 @@ def test_grazing_touches(law, initial, before, after):
     """On one side a touch has just become a stick as short as 0.0013, on the other it has not."""
     counts = []
     for a in (before, after):
-        model = Model(Chain(3), law_of(law, a))
+        model = Model(law, a=a)
         start = model.begin(PAPER_STATES[initial])
         results = new_ensemble(model).run(start.position[None], start.velocity[None], start.stuck[None], [200.0])
         counts.append(int(results["event_count"][0]))
@@ -186,7 +188,7 @@ def test_grazing_touches(law, initial, before, after):
 
 
 def test_threads_share_the_work():
-    model = Model(Chain(3), law_of("nonlinear", 0.2))
+    model = Model("nonlinear", a=0.2)
     start = states(model, 64)
     whole = new_ensemble(model).run(*start, [50.0])
     with ThreadPoolExecutor(4) as pool:
@@ -197,7 +199,7 @@ def test_threads_share_the_work():
 
 def test_a_trajectory_without_bound_ends_alone():
     """A fast block under a law that accelerates it without limit ends as diverged; another trajectory continues."""
-    model = Model(Chain(3), law_of("linearized", 1.9), 0.1, "symmetric")
+    model = Model("linearized", a=1.9, v=0.1, contact="symmetric")
     position, velocity = np.array([[5.0, -5.0, 5.0], [0.0, 0.0, 0.0]]), np.array([[3.0, -3.0, 3.0], [0.1, 0.1, 0.1]])
     results = new_ensemble(model).run(position, velocity, np.zeros((2, 3)), [1.0, 300.0])
     alone = new_ensemble(model).run(position[1:], velocity[1:], np.zeros((1, 3)), [1.0, 300.0])

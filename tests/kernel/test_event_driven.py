@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume
 from hypothesis import strategies as st
 
-from burridge_knopoff import InitialState, simulate
+from burridge_knopoff import InitialState, Model, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import CONTACTS, STARTS
 from tests.conftest import quick_first, random_examples
@@ -39,12 +39,13 @@ GRAZES = [
 ]
 
 
-def check(law, initial, a, tolerance=1e-12, end=200.0, **conventions):
+def check(law, initial, a, tolerance=1e-12, end=200.0, contact="one_sided", start="moving"):
     """Compare all solvers with the reference; return its events."""
     state = PAPER_STATES[initial]
-    expected = reference_events(law, a, state.position, state.velocity, end=end, **conventions)
+    expected = reference_events(law, a, state.position, state.velocity, end=end, contact=contact, start=start)
+    options = {"transient": 0.0, "window": end, "events": "all", "start": start}
     for solver in SOLVERS[law]:
-        run = simulate(law, a, initial, solver=solver, transient=0.0, window=end, events="all", **conventions)
+        run = simulate(Model(law, a=a, contact=contact), initial, solver=solver, **options)
         check_events(listed(run), expected, tolerance)
     return expected
 
@@ -108,7 +109,7 @@ def test_random_chains_against_scipy(chain):
     state = InitialState("drawn", tuple(position), tuple(velocity))
     for solver in SOLVERS[law]:
         settings = {"transient": 0.0, "window": end, "events": "all", "trajectory": 0.0, **options}
-        run = simulate(law, a, state, solver=solver, **settings)
+        run = simulate(Model(law, a=a), state, solver=solver, **settings)
         assert run.status == "completed"
         assume(not (np.diff(run.event_time) < 2e-3).any())
         check_events(listed(run), expected, 1e-6)

@@ -5,7 +5,7 @@ import pickle
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, InitialState, Model, event_exponents, law_of, record_events
+from burridge_knopoff import Chain, ChainState, InitialState, Model, event_exponents, record_events
 from burridge_knopoff.kernel._core import Catalogue, EventLog
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
@@ -32,7 +32,7 @@ def run_until(model, state, end, groups, loading):
 
 def test_a_block_under_quasistatic_loading_has_all_its_events_in_a_continued_run():
     """A run from a final state once ended after 500 events: its unit of time was one of the loading clock."""
-    model = Model(Chain(1), law_of("carlson_langer", 0.5, {"sigma": 0.1}), v=1e-4)
+    model = Model("carlson_langer", a=0.5, sigma=0.1, blocks=1, v=1e-4)
     start = model.begin(InitialState("rest", (-0.9,), 0.0), "tested")
     whole, first = (record_events(model, start, end, loading="quasistatic") for end in (2e7, 2e6))
     later = record_events(model, first.final, 2e7, loading="quasistatic")
@@ -47,9 +47,7 @@ def test_a_block_under_quasistatic_loading_has_all_its_events_in_a_continued_run
 @pytest.mark.parametrize("v", [1e-4, 0.01, 1.0])
 def test_the_exponent_of_a_pair_from_a_settled_state(v):
     """−0.1326596 per event by an independent integration; the run from a settled state once ended after 667 events."""
-    model = Model(
-        Chain(2, coupling=3.25, pulling=1, threshold=(1.0, 2.25)), law_of("carlson_langer", 0.0, {"sigma": 0.2}), v
-    )
+    model = Model("carlson_langer", a=0.0, sigma=0.2, blocks=2, coupling=3.25, pulling=1, threshold=(1.0, 2.25), v=v)
     start = model.begin(InitialState("rest", (-0.5, -0.95), 0.0), "tested")
     settled = record_events(model, start, 1000.0 / v, loading="quasistatic").final
     found = event_exponents(model, settled, 3000.0 / v)
@@ -65,7 +63,7 @@ def test_far_more_events_than_the_limit(blocks, groups, loading, v, time, monkey
     """Ten stops and starts of a block in a unit of time are more than any slip makes; the limit is 1000."""
     monkeypatch.setattr(LIMIT, 10)
     chain = Chain(blocks, coupling=2.0, pulling=1.0) if blocks > 1 else Chain(1, pulling=1.0)
-    model = Model(chain, law_of("carlson_langer", 0.5, {"sigma": 0.1}), v)
+    model = Model("carlson_langer", a=0.5, sigma=0.1, chain=chain, v=v)
     start, length = at_rest(model, time), (30.0 if loading == "quasistatic" else 15.0) / v
     runner, status, events = run_until(model, start, time + length, groups, loading)
     assert status == Status.COMPLETED
@@ -87,7 +85,7 @@ def test_far_more_events_than_the_limit(blocks, groups, loading, v, time, monkey
 @pytest.mark.parametrize("blocks", [23, 24])
 def test_events_beyond_the_limit_end_a_run(blocks, groups, loading, monkeypatch):
     """Equal blocks start at one instant, under quasi-static loading that at which they have stopped before."""
-    model = Model(Chain(blocks, coupling=2.0, pulling=1.0), law_of("carlson_langer", 0.5), 0.01)
+    model = Model("carlson_langer", a=0.5, blocks=blocks, coupling=2.0, pulling=1.0, v=0.01)
     equal = ChainState(np.full(blocks, -0.6) - model.sliding_offset, np.zeros(blocks), np.ones(blocks, dtype=bool))
     for limit, expected in ((2 * blocks, Status.COMPLETED), (blocks - 1, Status.ACCUMULATING_EVENTS)):
 
@@ -108,7 +106,7 @@ def test_events_beyond_the_limit_end_a_run(blocks, groups, loading, monkeypatch)
 def test_a_table_that_was_full_is_empty_in_the_next_run(monkeypatch):
     """The flag of a full table once outlived its rows."""
     monkeypatch.setattr("burridge_knopoff.running.runner.MOST_NUMBERS", 3 * 8)
-    model = Model(Chain(1, pulling=1.0), law_of("linearized", 0.3), 0.1)
+    model = Model("linearized", a=0.3, blocks=1, pulling=1.0, v=0.1)
     runner = Runner(model, keep_events=True, events_from=np.inf)
     runner.begin(at_rest(model))
     with refused("events"):
@@ -120,7 +118,7 @@ def test_a_table_that_was_full_is_empty_in_the_next_run(monkeypatch):
 @pytest.mark.parametrize("most", [3, 10])
 def test_events_that_are_left_out_fill_no_catalogue(most):
     """Only an event that would be stored makes a catalogue full, the first one that finds no room."""
-    model = Model(Chain(1, pulling=1.0), law_of("linearized", 0.3), 0.1)
+    model = Model("linearized", a=0.3, blocks=1, pulling=1.0, v=0.1)
     time = record_events(model, at_rest(model), 400.0).time
     begin, end = (0.5 * (time[k] + time[k + 1]) for k in (4, 4 + most))
     catalogue = Catalogue(1, begin, False, most)

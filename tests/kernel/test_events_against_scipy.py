@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, FormulaLaw, InitialState, Model, law_of
+from burridge_knopoff import Chain, ChainState, FormulaLaw, InitialState, Model
 from burridge_knopoff.kernel._core import LANES, run_in_lockstep
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import CONTACTS
@@ -58,23 +58,23 @@ class Case(NamedTuple):
 
 
 def few_blocks(chain, law, contact):
-    model = Model(chain, law_of(law, 0.2), contact=contact)
+    model = Model(law, a=0.2, chain=chain, contact=contact)
     return Case(model, [model.begin(wave(chain.blocks, 0.3), "tested")], 25.0, 5)
 
 
 def network(chain, law, contact):
-    model = Model(chain, law_of(law, 0.3), contact=contact)
+    model = Model(law, a=0.3, chain=chain, contact=contact)
     return Case(model, [rest(model)], 14.0, 3)
 
 
 def steep_law(name, w, contact):
     """The time is short enough for the peer, which needs short steps, to remain accurate."""
-    model = Model(Chain(3), FormulaLaw(0.1, FORMULAS[name], w=w), contact=contact)
+    model = Model(FormulaLaw(FORMULAS[name], w=w, **{"a": 0.1} if "a*u" in FORMULAS[name] else {}), contact=contact)
     return Case(model, [model.begin(PAPER_STATES["minus"])], 6.0, 5)
 
 
 def many_states(law):
-    model, generator = Model(Chain(3), law_of(law, 0.2)), np.random.default_rng(3)
+    model, generator = Model(law, a=0.2), np.random.default_rng(3)
     positions = generator.uniform(-1.2, -0.4, (LANES + 2, 3))
     states = [InitialState("drawn", tuple(position), (0.1, 0.05, 0.12)) for position in positions]
     return Case(model, [model.begin(state) for state in states], 15.0, 6)
@@ -102,7 +102,7 @@ def dashpots(seed):
             matrix[[i, j], [i, j]] += number
             matrix[[i, j], [j, i]] -= number
     law, contact = str(generator.choice(list(ALL_LAWS))), str(generator.choice(CONTACTS))
-    model = Model(chain, law_of(law, ALL_LAWS[law]), float(generator.choice([0.1, 0.3])), contact)
+    model = Model(law, a=ALL_LAWS[law], chain=chain, v=float(generator.choice([0.1, 0.3])), contact=contact)
     velocity = generator.uniform(0.0, 0.3, blocks)
     if contact == "symmetric":
         velocity *= generator.choice([-1.0, 1.0], blocks)

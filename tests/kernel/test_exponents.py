@@ -50,8 +50,8 @@ CHAOTIC = {
 
 @pytest.mark.parametrize(("law", "initial", "a"), [(law, *case) for law in LAWS for case in CHAOTIC[law]])
 def test_two_trajectories_side_by_side(law, initial, a):
-    model = Model(Chain(3), law_of(law, a))
-    run = simulate(law, a, initial, window=14000.0, batches=14, lyapunov_exponents=1, events="none")
+    model = Model(law, a=a)
+    run = simulate(Model(law, a=a), initial, window=14000.0, batches=14, lyapunov_exponents=1, events="none")
     start = later(model, model.begin(PAPER_STATES[initial]), 3000.0)
     expected, error = side_by_side(model, start, 14000.0)
     assert run.lyapunov_exponent[0] > 5.0 * run.lyapunov_error[0]
@@ -65,9 +65,11 @@ def test_two_trajectories_side_by_side(law, initial, a):
 def test_uniform_sliding(law, blocks, transient):
     """All 2N exponents are aΦ²/2 (Φ² = 1 for the linearized law), half the slope of friction over velocity."""
     a, v = 0.3, 0.1
-    offset = Chain(blocks).sliding_offset(float(law_of(law, a)(v)))
+    offset = Chain(blocks).sliding_offset(float(law_of(law, a=a)(v)))
     state = InitialState("uniform", tuple(offset), (v,) * blocks)
-    run = simulate(law, a, state, v=v, transient=transient, window=4000.0, lyapunov_exponents=2 * blocks)
+    run = simulate(
+        Model(law, a=a, v=v, blocks=blocks), state, transient=transient, window=4000.0, lyapunov_exponents=2 * blocks
+    )
     assert run.event_count == 0
     slope = a if law == "linearized" else a / (1.0 + a * v) ** 2
     # The modes rotate: after a time T a vector's length differs from exp(λT) by less than the ratio e² of axes.
@@ -81,9 +83,9 @@ def test_uniform_sliding(law, blocks, transient):
 )
 def test_transverse_exponent_of_synchrony(law, a):
     """That of a difference of blocks 1 and 3, whose multiplier over a period is known from 40-digit arithmetic."""
-    orbit = synchronized_orbit(Model(Chain(3), law_of(law, a)))
+    orbit = synchronized_orbit(Model(law, a=a))
     transverse = np.log(abs(exact_transverse_multiplier(orbit))) / orbit.period
-    run = simulate(law, a, SYMMETRIC, window=20000.0, transient=2000.0, events="none")
+    run = simulate(Model(law, a=a), SYMMETRIC, window=20000.0, transient=2000.0, events="none")
     assert run.distance.max() == 0.0
     # Two exponents are known, in the order of their size: that of the flow itself, 0, and the transverse one.
     for exponent in (0.0, transverse):
@@ -104,7 +106,7 @@ def test_transverse_exponent_of_synchrony(law, a):
 )
 def test_sum_of_all_finite_exponents_is_the_determinant(law, blocks, a, contact):
     """Between two instants with m blocks stuck the flow maps 2N − m dimensions to as many."""
-    model = Model(Chain(blocks), law_of(law, a), contact=contact)
+    model = Model(law, a=a, blocks=blocks, contact=contact)
     states = [later(model, model.begin(wave(blocks)), 200.0)]
     for _ in range(800):
         states.append(later(model, states[-1], 0.05))
@@ -126,7 +128,7 @@ def test_sum_of_all_finite_exponents_is_the_determinant(law, blocks, a, contact)
 
 @pytest.mark.parametrize(("law", "initial", "a"), [("linearized", "minus", 0.08), ("nonlinear", "plus", 0.08)])
 def test_the_first_exponents_do_not_depend_on_how_many_are_computed(law, initial, a):
-    runs = [simulate(law, a, initial, events="none", lyapunov_exponents=count) for count in (0, 1, 2, 3, 6)]
+    runs = [simulate(Model(law, a=a), initial, events="none", lyapunov_exponents=count) for count in (0, 1, 2, 3, 6)]
     for run in runs:
         first = run.lyapunov_exponent[:3]
         assert np.allclose(first, runs[-1].lyapunov_exponent[: len(first)], rtol=0, atol=1e-9)
@@ -135,7 +137,7 @@ def test_the_first_exponents_do_not_depend_on_how_many_are_computed(law, initial
 
 def test_mirror_image(law):
     mirror = InitialState("mirror", PLUS.position[::-1], PLUS.velocity[::-1])
-    run, other = (simulate(law, 0.08, initial, events="none") for initial in (PLUS, mirror))
+    run, other = (simulate(Model(law, a=0.08), initial, events="none") for initial in (PLUS, mirror))
     assert run.lyapunov_infinite_count == other.lyapunov_infinite_count
     assert np.abs(run.lyapunov_exponent - other.lyapunov_exponent).max() < 3e-4
 
@@ -143,7 +145,7 @@ def test_mirror_image(law):
 @pytest.mark.parametrize("blocks", [2, 5])
 def test_shorter_and_longer_chains(law, blocks):
     """Regular motion has at least one zero exponent, none above it, and 2N in all."""
-    run = simulate(law, 0.05, wave(blocks), lyapunov_exponents=2 * blocks)
+    run = simulate(Model(law, a=0.05, blocks=blocks), wave(blocks), lyapunov_exponents=2 * blocks)
     exponent, error = run.lyapunov_exponent, run.lyapunov_error
     finite = np.isfinite(exponent)
     assert np.abs(exponent[finite]).min() < 3.0 * error[finite][np.abs(exponent[finite]).argmin()]
@@ -161,7 +163,7 @@ def growth(model, start, edges, **options):
     return exponents.results()["growth"], exponents.matrix()
 
 
-BATCHED = {law: (law_of(law, 0.2), 0.1) for law in LAWS} | {"quintic": (FormulaLaw(0.3, "1 - a*u + 0.3*u**5"), 0.5)}
+BATCHED = {law: (law_of(law, a=0.2), 0.1) for law in LAWS} | {"quintic": (FormulaLaw("1 - a*u + 0.3*u**5", a=0.3), 0.5)}
 
 
 @pytest.mark.parametrize("law", BATCHED)
@@ -169,7 +171,7 @@ BATCHED = {law: (law_of(law, 0.2), 0.1) for law in LAWS} | {"quintic": (FormulaL
 def test_batches_begin_and_end_at_their_edges(law, damping):
     """Against QR of finite differences over each batch: perturbed runs, which know of no perturbation."""
     law, v = BATCHED[law]
-    model = Model(Chain(3, damping=damping), law, v)
+    model = Model(law, damping=damping, v=v)
     at = later(model, model.begin(PLUS), 37.0)
     start = ChainState(at.position, at.velocity, at.stuck)
     edges = [0.0, 5.3, 11.0, 16.2]
@@ -189,7 +191,7 @@ def test_batches_begin_and_end_at_their_edges(law, damping):
 @pytest.mark.parametrize("blocks", [3, 24])
 def test_growth_up_to_an_edge_is_that_of_a_run_that_ends_there(law, groups, blocks):
     law, v = BATCHED[law]
-    model = Model(Chain(blocks), law, v)
+    model = Model(law, blocks=blocks, v=v)
     start = model.begin(wave(blocks))
     edges = np.linspace(0.0, 30.0, 11)
     found = np.cumsum(growth(model, start, edges, groups=groups)[0], axis=0)
@@ -201,7 +203,7 @@ def test_growth_up_to_an_edge_is_that_of_a_run_that_ends_there(law, groups, bloc
 @pytest.mark.parametrize("transient", [0.0, 100.0])
 def test_windows_too_short_for_batches(law, transient, window):
     """The exponent is the growth of a real vector, and its error says how little a short window resolves."""
-    run = simulate(law, 0.2, "plus", transient=transient, window=window, lyapunov_exponents=6)
+    run = simulate(Model(law, a=0.2), "plus", transient=transient, window=window, lyapunov_exponents=6)
     assert run.status == "completed"
     exponent, error = run.lyapunov_exponent, run.lyapunov_error
     assert (np.isnan(error) == np.isinf(exponent)).all()
@@ -224,7 +226,7 @@ def test_runs_without_exponents(monkeypatch, limit, settings, count):
     """Some do not complete; in others no exponents are requested or possible."""
     if limit:
         monkeypatch.setattr("burridge_knopoff.running.runner.STEP_LIMIT", limit)
-    run = simulate("linearized", 0.08, "plus", **settings)
+    run = simulate(Model("linearized", a=0.08), "plus", **settings)
     assert run.status == ("step_limit" if limit else "completed")
     assert run.lyapunov_exponent.shape == run.lyapunov_error.shape == (count,)
     assert run.batch_lyapunov_exponent.shape == (7, count)
@@ -242,7 +244,7 @@ REGULAR = {
 @pytest.mark.parametrize(("law", "initial", "a", "zeros"), [(law, *case) for law in LAWS for case in REGULAR[law]])
 def test_zero_exponents_of_regular_motion(law, initial, a, zeros):
     """One exponent belongs to the flow, a second one to a torus; both are 0 within their errors, the next is not."""
-    run = simulate(law, a, initial, events="none")
+    run = simulate(Model(law, a=a), initial, events="none")
     exponent, error = run.lyapunov_exponent, run.lyapunov_error
     assert (np.abs(exponent[:zeros]) < 2.0 * error[:zeros]).all()
     assert exponent[zeros] < -10.0 * error[zeros]
@@ -252,7 +254,7 @@ def test_zero_exponents_of_regular_motion(law, initial, a, zeros):
 @pytest.mark.parametrize("alignment", [10.0, 1000.0])
 def test_growth_like_a_power_of_time_is_within_the_error(alignment):
     """Linear growth gains ln(1 + T/A) in a window T after an alignment A, which batches alone take for an exponent."""
-    run = simulate("linearized", 0.06, "plus", events="none", lyapunov_alignment=alignment)
+    run = simulate(Model("linearized", a=0.06), "plus", events="none", lyapunov_alignment=alignment)
     window = 7000.0
     statistical = run.batch_lyapunov_exponent.std(axis=0, ddof=1) / np.sqrt(7)
     expected = np.hypot(statistical, np.log(1.0 + window / (1.0 + alignment)) / window)
@@ -283,7 +285,7 @@ def most_stuck(run, begin_time):
     ],
 )
 def test_as_many_exponents_are_infinite_as_blocks_stick_at_once(law, initial, a, contact):
-    run = simulate(law, a, initial, contact=contact, events="all", lyapunov_exponents=6, transient=1000.0)
+    run = simulate(Model(law, a=a, contact=contact), initial, events="all", lyapunov_exponents=6, transient=1000.0)
     expected = most_stuck(run, 1000.0)
     assert run.lyapunov_infinite_count == expected
     assert np.isneginf(run.lyapunov_exponent).tolist() == [False] * (6 - expected) + [True] * expected
@@ -297,7 +299,9 @@ def test_blocks_that_stick_only_in_the_transient_do_not_count():
     options = {"events": "all", "lyapunov_exponents": 6, "start": "tested", "transient": 2000.0}
     state = InitialState("held", (0.3, 0.3, 0.25), (0.1, 0.1, 0.1))
     assert (-Chain(3).stiffness @ state.position < 1.0).all()
-    run, other = (simulate("linearized", 0.25, state, lyapunov_alignment=time, **options) for time in (2000.0, 500.0))
+    run, other = (
+        simulate(Model("linearized", a=0.25), state, lyapunov_alignment=time, **options) for time in (2000.0, 500.0)
+    )
     assert most_stuck(run, 1990.0) == run.lyapunov_infinite_count == 1
     assert np.isfinite(run.lyapunov_exponent[:5]).all()
     assert (np.abs(run.lyapunov_exponent[:5] - other.lyapunov_exponent[:5]) < 4.0 * other.lyapunov_error[:5]).all()
@@ -309,7 +313,7 @@ def test_parts_of_a_chain_lose_perturbations_one_after_the_other():
     At most two blocks stick at once, but block 3 cannot restore the directions that block 1 has lost, so that the map
     has rank 3. The remainders of the lost vectors are rounding errors and must not be taken for finite exponents.
     """
-    model = Model(Chain(3), law_of("linearized", 0.1), 0.1)
+    model = Model("linearized", a=0.1, v=0.1)
     start = ChainState(np.array([0.17, 0.3, 0.345]), np.array([0.003, 0.0, 0.3]), np.array([False, True, False]))
     runner, events = carry(model, start, 1.0, np.diag([1.0, 1.0, 1.0, 1.0, 0.0, 1.0]))
     assert [event[1:] for event in events] == [(1, 0), (1, 1), (3, 0)]

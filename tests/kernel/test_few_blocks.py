@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, Section, law_of, simulate
+from burridge_knopoff import Chain, InitialState, Model, Section, simulate
 from burridge_knopoff.running.ensemble import new_ensemble
 from tests.flows import carry, wave
 from tests.kernel.test_ensemble import check_against_scalar
@@ -39,7 +39,7 @@ def cycle(pulling, threshold, a, v):
 @pytest.mark.parametrize("a", [0.02, 0.08, 0.3])
 @pytest.mark.parametrize("chain", CHAINS[:2])
 def test_one_block_agrees_with_its_closed_form(chain, a):
-    model = Model(chain, law_of("linearized", a))
+    model = Model("linearized", a=a, chain=chain)
     slip, stick = cycle(chain.driving[0], chain.thresholds[0], a, model.v)
     # At its threshold and about to slip: on the cycle.
     at = float(-(chain.thresholds[0] - model.v * 1e-3) / chain.driving[0])
@@ -55,7 +55,7 @@ def test_one_block_agrees_with_its_closed_form(chain, a):
 
 
 def test_one_block_has_no_distance_and_two_exponents(law):
-    run = simulate(law, 0.2, ((-0.9,), (0.1,)))
+    run = simulate(Model(law, a=0.2, blocks=1), ((-0.9,), (0.1,)))
     assert run.status == "completed"
     assert (run.distance == 0.0).all()
     assert run.mean_distance == 0.0
@@ -67,7 +67,7 @@ def test_one_block_has_no_distance_and_two_exponents(law):
 @pytest.mark.parametrize("contact", ["one_sided", "symmetric"])
 @pytest.mark.parametrize("chain", CHAINS)
 def test_lanes_against_one_state(law, chain, contact):
-    model = Model(chain, law_of(law, 0.2), contact=contact)
+    model = Model(law, a=0.2, chain=chain, contact=contact)
     assert check_against_scalar(model, new_ensemble(model), 10, 12.0) > 10
 
 
@@ -83,7 +83,10 @@ def test_co_moving_coordinates_of_the_train():
 def test_section_of_one_block(law, blocks):
     """Its crossings are the sign changes of x_n of a dense trajectory, with U_n' − v there."""
     options = {"transient": 10.0, "window": 50.0, "batches": 2, "trajectory": 60.0, "trajectory_sampling": 1e-3}
-    runs = [simulate(law, 0.2, wave(blocks), section=Section("block", n), **options) for n in (1, blocks)]
+    runs = [
+        simulate(Model(law, a=0.2, blocks=blocks), wave(blocks), section=Section("block", n), **options)
+        for n in (1, blocks)
+    ]
     for n, run in zip((1, blocks), runs, strict=True):
         inside = run.trajectory_time >= 10.0
         time, x, w = (
@@ -100,10 +103,12 @@ def test_section_of_one_block(law, blocks):
 def test_the_section_is_part_of_all_forms_of_settings():
     forms = ("block=2", {"of": "block", "block": 2}, Section("block", 2))
     options = {"transient": 0.0, "window": 30.0, "batches": 2}
-    times = [simulate("linearized", 0.1, "plus", section=section, **options).crossing_time for section in forms]
+    times = [
+        simulate(Model("linearized", a=0.1), "plus", section=section, **options).crossing_time for section in forms
+    ]
     assert len(times[0]) > 3
     assert all(np.array_equal(times[0], other) for other in times)
-    run = simulate("linearized", 0.1, "plus", section="block=2", **options)
+    run = simulate(Model("linearized", a=0.1), "plus", section="block=2", **options)
     assert run.to_dataset().attrs["section"] == "block=2"
     assert run.to_dataset().attrs["history"].endswith("--section block=2")
 
@@ -121,4 +126,4 @@ def test_the_section_is_part_of_all_forms_of_settings():
 )
 def test_sections_that_are_refused(section, message):
     with refused(message):
-        simulate("linearized", 0.1, "plus", section=section)
+        simulate(Model("linearized", a=0.1), "plus", section=section)

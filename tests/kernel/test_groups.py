@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff import Chain, ChainState, Model
 from burridge_knopoff.model.model import CONTACTS
 from burridge_knopoff.running.runner import Runner, new_observer
 from burridge_knopoff.running.section import SUM, Section
@@ -47,7 +47,7 @@ def test_events_are_those_of_the_chain_as_a_whole(blocks, law, contact, ends, co
     dashpots = dict(zip(("damping", "pulling_damping"), dashpots, strict=True))
     options = {"ends": ends if blocks > 1 else "open", "weakening": MIXED if seed % 2 else 1.0, **dashpots}
     chain = Chain(blocks, coupling=coupling, pulling=1.0, **options)
-    model = Model(chain, law_of(law, LAWS[law]), v, contact)
+    model = Model(law, a=LAWS[law], chain=chain, v=v, contact=contact)
     start = at_rest(model, seed)
     # Chaos sets in with the first slips that reach far.
     end = 0.6 / v + 2.0
@@ -61,7 +61,7 @@ def test_events_are_those_of_the_chain_as_a_whole(blocks, law, contact, ends, co
 
 
 def test_a_mirrored_chain_moves_as_its_mirror_image():
-    model = Model(Chain(60, coupling=30.0, pulling=1.0), law_of("nonlinear", 3.0), 0.01)
+    model = Model("nonlinear", a=3.0, blocks=60, coupling=30.0, pulling=1.0, v=0.01)
     start = at_rest(model, 3)
     events_straight, events_mirrored = (events(model, state, 80.0, True)[1] for state in (start, start.mirrored()))
     assert len(events_straight) > 300
@@ -72,7 +72,7 @@ def test_a_mirrored_chain_moves_as_its_mirror_image():
 @pytest.mark.parametrize("section", [SUM, Section("block", 17)])
 def test_observables_are_those_of_the_chain_as_a_whole(section):
     """⟨J⟩, samples, section crossings, states and extremes, in a window that begins during the motion."""
-    model = Model(Chain(40, coupling=4.0, pulling=1.0), law_of("nonlinear", 0.2), 0.1)
+    model = Model("nonlinear", a=0.2, blocks=40, coupling=4.0, pulling=1.0, v=0.1)
     start = at_rest(model, 5)
     results = []
     for groups in (True, False):
@@ -89,7 +89,7 @@ def test_observables_are_those_of_the_chain_as_a_whole(section):
 
 
 def test_a_continued_run_has_the_events_of_the_whole_run_to_the_bit():
-    model = Model(Chain(50, coupling=20.0, pulling=1.0), law_of("nonlinear", 3.0), 0.02)
+    model = Model("nonlinear", a=3.0, blocks=50, coupling=20.0, pulling=1.0, v=0.02)
     start = at_rest(model, 7)
     whole = events(model, start, 60.0, True)[1]
     first, earlier = events(model, start, 33.3, True)
@@ -101,7 +101,7 @@ def test_a_continued_run_has_the_events_of_the_whole_run_to_the_bit():
 @pytest.mark.slow
 def test_a_hundred_thousand_blocks():
     """An event costs no more than in a short chain, however many blocks stick."""
-    model = Model(Chain(100_000, coupling=100.0, pulling=1.0), law_of("carlson_langer", 5.0), 0.001)
+    model = Model("carlson_langer", a=5.0, blocks=100_000, coupling=100.0, pulling=1.0, v=0.001)
     runner = Runner(model)
     runner.begin(at_rest(model, 1, 0.001))
     assert runner.run(50.0) == Status.COMPLETED

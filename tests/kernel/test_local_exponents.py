@@ -5,7 +5,7 @@ import pytest
 from hypothesis import assume
 from hypothesis import strategies as st
 
-from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff import Chain, ChainState, Model
 from burridge_knopoff.kernel._core import Exponents
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
@@ -67,7 +67,7 @@ def test_growth_is_that_of_the_chain_as_a_whole(
         pulling_damping=pulling_damping,
         weakening=MIXED if seed % 2 else 1.0,
     )
-    model = Model(chain, law_of(law, LAWS[law]), 10.0**speed, contact)
+    model = Model(law, a=LAWS[law], chain=chain, v=10.0**speed, contact=contact)
     start = at_rest(model, seed)
     # Under quasi-static loading batches of the chain as a whole begin and end with starts.
     edges = np.linspace(0.0, end_of(model, start, loading, count), 4 if loading == "steady" else 2)
@@ -99,7 +99,7 @@ def test_growth_is_that_of_the_chain_as_a_whole(
 )
 def test_growth_does_not_depend_on_the_batches(law, loading):
     """The edge of a batch falls within the pieces of groups, whose perturbations are then determined at one instant."""
-    model = Model(Chain(60, coupling=20.0, pulling=1.0), law_of(law, LAWS[law]), 0.02)
+    model = Model(law, a=LAWS[law], blocks=60, coupling=20.0, pulling=1.0, v=0.02)
     start = at_rest(model, 4)
     runner, whole = growth(model, start, [0.0, 40.0], 4, True, loading)
     other, parts = growth(model, start, np.linspace(0.0, 40.0, 21), 4, True, loading)
@@ -112,7 +112,7 @@ def test_growth_does_not_depend_on_the_batches(law, loading):
 
 def test_batches_of_whole_slips_grow_as_in_the_chain_as_a_whole():
     """Their edges lie in times at which all blocks stick."""
-    model = Model(Chain(12, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 0.002)
+    model = Model("carlson_langer", a=1.5, blocks=12, coupling=3.0, pulling=1.0, v=0.002)
     start = rough(model)
     edges = rests(model, start, 240.0)[::3]
     assert len(edges) > 5
@@ -124,7 +124,7 @@ def test_batches_of_whole_slips_grow_as_in_the_chain_as_a_whole():
 
 def test_perturbations_that_start_within_the_pieces_of_groups():
     """A continued run repeats the pieces in which the run before has ended; a new run begins with pieces of its own."""
-    model = Model(Chain(50, coupling=20.0, pulling=1.0), law_of("nonlinear", 3.0), 0.05)
+    model = Model("nonlinear", a=3.0, blocks=50, coupling=20.0, pulling=1.0, v=0.05)
     runner, _ = events(model, at_rest(model, 2), 17.3, True)
     middle = runner.final()
     assert not middle.stuck.all()
@@ -137,7 +137,7 @@ def test_perturbations_that_start_within_the_pieces_of_groups():
 
 @pytest.mark.parametrize("loading", ["steady", "quasistatic"])
 def test_perturbations_do_not_change_the_motion(loading):
-    model = Model(Chain(60, coupling=20.0, pulling=1.0), law_of("carlson_langer", 5.0), 0.02)
+    model = Model("carlson_langer", a=5.0, blocks=60, coupling=20.0, pulling=1.0, v=0.02)
     start = at_rest(model, 9)
     bare = Runner(model, groups=True, loading=loading, keep_events=True)
     exponents = Exponents(60, 3, 0.0, np.linspace(5.0, 40.0, 8))
@@ -153,7 +153,7 @@ def test_perturbations_do_not_change_the_motion(loading):
 @pytest.mark.slow
 @pytest.mark.parametrize(("v", "loading"), [(0.01, "steady"), (0.3, "steady"), (0.01, "quasistatic")])
 def test_exponents_of_long_runs_agree_within_their_errors(v, loading):
-    model = Model(Chain(30, coupling=20.0, pulling=1.0), law_of("carlson_langer", 5.0, {"sigma": 0.01}), v)
+    model = Model("carlson_langer", a=5.0, sigma=0.01, blocks=30, coupling=20.0, pulling=1.0, v=v)
     start = Runner(model).state_after(at_rest(model, 1), 2.0 / v)
     edges = np.linspace(0.0, 60.0 / v, 21)
     means, errors = [], []
@@ -172,7 +172,7 @@ def test_perturbations_that_dashpots_shorten_at_once_are_not_lost(dashpots, grou
     """Exponents of uniform sliding are the eigenvalues of its linear equations, however strong its dashpots."""
     damping, pulling_damping = dashpots
     a = 0.1
-    model = Model(Chain(2, damping=damping, pulling_damping=pulling_damping), law_of("linearized", a), 1.0)
+    model = Model("linearized", a=a, blocks=2, damping=damping, pulling_damping=pulling_damping, v=1.0)
     sliding = ChainState(np.zeros(2), np.ones(2), np.zeros(2, dtype=bool))
     runner, results = growth(model, sliding, [0.0, 500.0, 1500.0], 4, groups, clock=-500.0)
     stiffness = np.array([[2.0, -1.0], [-1.0, 2.0]])

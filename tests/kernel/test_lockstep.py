@@ -37,8 +37,8 @@ def batches(draw):
         weakening = generator.choice([-0.02, 0.0, 0.5, 1.0], blocks) if generator.random() < 0.5 else 1.0
         options = {"ends": ends, "weakening": weakening, **damped}
         chain = Chain(blocks, generator.uniform(0.3, 3.0), generator.uniform(0.5, 2.0), **options)
-        of = FormulaLaw(a, law) if law == QUINTIC else law_of(law, a)
-        model = Model(chain, of, float(generator.choice([0.01, 0.1, 0.5])), contact)
+        of = FormulaLaw(law, a=a) if law == QUINTIC else law_of(law, a=a)
+        model = Model(of, chain=chain, v=float(generator.choice([0.01, 0.1, 0.5])), contact=contact)
         position, velocity = generator.uniform(-0.5, 0.4, blocks), generator.uniform(0.0, 0.2, blocks)
         # Blocks that move identically except for rounding.
         if generator.random() < 0.4:
@@ -84,7 +84,7 @@ def test_runs_of_all_kinds_at_once():
     members = []
     for law in LAWS:
         for blocks in (2, 3, 24):
-            model = Model(Chain(blocks), law_of(law, 0.1))
+            model = Model(law, a=0.1, blocks=blocks)
             state = InitialState("drawn", tuple(0.2 * np.cos(np.arange(blocks))), (0.1,) * blocks)
             for solver in ("series", "map", "rk4"):
                 if solver == "map" and not model.has_closed_form:
@@ -100,7 +100,7 @@ def test_runs_of_all_kinds_at_once():
 
 
 def test_runs_halt_at_stops_and_continue():
-    model = Model(Chain(3), law_of("nonlinear", 0.08))
+    model = Model("nonlinear", a=0.08)
 
     def runners():
         for k in range(2 * LANES + 1):
@@ -123,10 +123,13 @@ def test_runs_halt_at_stops_and_continue():
 
 def test_runs_end_as_they_do_alone():
     """A diverging run, one with too many events and one with a full table end as they do alone; the others continue."""
-    law, symmetric = law_of("linearized", 3.0), "symmetric"
+    law, symmetric = law_of("linearized", a=3.0), "symmetric"
     state = InitialState("drawn", (0.3, -0.4), (0.1, 0.0))
-    diverging = Model(Chain(2, 0.1, 0.1), law, 1.0, symmetric), InitialState("drawn", (90.0, -50.0), (0.0, 0.0))
-    ordinary = Model(Chain(2), law_of("linearized", 0.1), 1.0, symmetric), state
+    diverging = (
+        Model(law, chain=Chain(2, 0.1, 0.1), v=1.0, contact=symmetric),
+        InitialState("drawn", (90.0, -50.0), (0.0, 0.0)),
+    )
+    ordinary = Model("linearized", a=0.1, blocks=2, v=1.0, contact=symmetric), state
     options = Settings(transient=0.0, window=200.0, lyapunov_exponents=1)
     members = [(*(diverging if k % 3 == 0 else ordinary), options) for k in range(2 * LANES)]
     alone = [run(*member) for member in members]
@@ -137,7 +140,7 @@ def test_runs_end_as_they_do_alone():
 
 
 def test_ctrl_c_ends_them():
-    model = Model(Chain(3), law_of("nonlinear", 0.08))
+    model = Model("nonlinear", a=0.08)
     runners = [Runner(model) for _ in range(2 * LANES)]
     for runner in runners:
         runner.begin(model.begin(InitialState("drawn", (-1.0, -0.9, -1.0), (0.1, 0.12, 0.1))))

@@ -52,10 +52,12 @@ def chains(draw, ends=("open", "ring")):
     pulling = draw(st.sampled_from([0.1, 1.0, 40.0]))
     threshold = draw(st.sampled_from([1e-3, 1.0, 50.0]))
     v = threshold * draw(st.sampled_from([0.01, 0.1, 1.0]))
-    law = law_of(draw(st.sampled_from(["linearized", "nonlinear"])), generator.uniform(0.0, 0.4) / max(1.0, threshold))
+    law = law_of(
+        draw(st.sampled_from(["linearized", "nonlinear"])), a=generator.uniform(0.0, 0.4) / max(1.0, threshold)
+    )
     damping, pulling_damping = (size * (coupling * pulling) ** 0.25 for size in draw(DASHPOTS))
     chain = Chain(blocks, coupling, pulling, threshold, end, damping=damping, pulling_damping=pulling_damping)
-    model = Model(chain, law, v, draw(st.sampled_from(["one_sided", "symmetric"])))
+    model = Model(law, chain=chain, v=v, contact=draw(st.sampled_from(["one_sided", "symmetric"])))
     size = threshold / (coupling + pulling) * draw(st.sampled_from([1e-3, 0.1, 1.0]))
     position = size * generator.normal(size=blocks)
     velocity = v * draw(st.sampled_from([0.0, 1.0, 3.0])) * abs(generator.normal(size=blocks))
@@ -102,7 +104,7 @@ def test_a_ring_has_no_first_block(drawn, turn, period):
     """A rotated state has the rotated motion; a state that is periodic along the ring stays periodic."""
     model, position, velocity, duration = drawn
     blocks = model.blocks // period * period
-    repeated = Model(replace(model.chain, blocks=max(blocks, 3), threshold=1.0), model.law, model.v)
+    repeated = Model(model.law, chain=replace(model.chain, blocks=max(blocks, 3), threshold=1.0), v=model.v)
     x, u, _ = states_of("series", model, position, velocity, duration)
     other_x, other_u, _ = states_of("series", model, np.roll(position, turn), np.roll(velocity, turn), duration)
     assert (np.roll([x, u], turn, axis=2) == np.array([other_x, other_u])).all()
@@ -115,7 +117,7 @@ def test_a_ring_has_no_first_block(drawn, turn, period):
 @pytest.mark.parametrize("engine", ENGINES)
 def test_stiff_springs_of_three_blocks(engine):
     """Asymmetric perturbations of this state grow as exp(0.039 τ), but ⟨J⟩ must stay 0."""
-    model = Model(Chain(3, coupling=250.0, pulling=1.0), law_of("linearized", 0.3))
+    model = Model("linearized", a=0.3, coupling=250.0, pulling=1.0)
     x, u, count = states_of(engine, model, (-1.0, -0.95, -1.0), (0.1, 0.12, 0.1), 2000.0)
     assert count > 1000
     assert (np.array([x, u]) == np.array([x, u])[..., ::-1]).all()
@@ -124,7 +126,7 @@ def test_stiff_springs_of_three_blocks(engine):
 @pytest.mark.parametrize("engine", ["series", "ensemble"])
 def test_stiff_springs_of_five_blocks(engine):
     """From rest, with dimensional springs; mirror blocks must start at the same time, and ⟨J⟩ must stay 0."""
-    model = Model(Chain(5, coupling=250.0, pulling=40.0, threshold=50.0), law_of("nonlinear", 1.0), v=0.01)
+    model = Model("nonlinear", a=1.0, blocks=5, coupling=250.0, pulling=40.0, threshold=50.0, v=0.01)
     position = 1e-4 * np.array([4.0, -3.0, 2.0, -3.0, 4.0])
     x, u, count = states_of(engine, model, position, np.zeros(5), 2000.0, "tested")
     assert count > 100
@@ -138,7 +140,7 @@ def test_starts_at_different_times_keep_their_order(coupling, apart):
     v, force = 0.1, np.array([0.5, 0.5 - 0.1 * apart, 0.5])
     chain = Chain(3, coupling, pulling=1.0)
     position = -np.linalg.solve(chain.stiffness, force)
-    model = Model(chain, law_of("linearized", 0.1), v)
+    model = Model("linearized", a=0.1, chain=chain, v=v)
     whole = {"transient": 0.0, "window": 5.5, "events": "all", "lyapunov_exponents": 0}
     run = simulate(model, initial=(position, (0.0, 0.0, 0.0)), **whole, start="tested")
     rounding = 1e-15 * (1.0 + coupling * abs(position).max()) / v
@@ -156,7 +158,7 @@ def test_grids_from_left_to_right(grid, engine):
     generator = np.random.default_rng(columns)
     left = generator.uniform(-1.2, -0.4, (rows, columns))
     position = np.minimum(left, left[:, ::-1])
-    model = Model(Chain(grid=grid, coupling=3.0, pulling=1.0), law_of("carlson_langer", 3.0), v=0.1)
+    model = Model("carlson_langer", a=3.0, grid=grid, coupling=3.0, pulling=1.0, v=0.1)
     x, u, count = states_of(engine, model, position.ravel(), np.zeros(columns * rows), 60.0, "tested")
     assert count > 50
     fields = np.reshape([x, u], (2, TIMES, rows, columns))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, law_of, simulate
+from burridge_knopoff import Chain, InitialState, Model, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import CONTACTS
 from burridge_knopoff.running.runner import Runner
@@ -19,7 +19,7 @@ SCALED = [{"coupling": 2.5}, {"pulling": 0.7}, {"threshold": 1.6}, {"coupling": 
     [*((options, blocks, 1e-10) for options in SCALED for blocks in (2, 3, 5)), *(({}, n, 1e-11) for n in (2, 5, 12))],
 )
 def test_events_of_uniform_chains(options, blocks, tolerance):
-    model = Model(Chain(blocks, **options), law_of("linearized", 0.2))
+    model = Model("linearized", a=0.2, blocks=blocks, **options)
     assert model.has_closed_form
     start = model.begin(wave(blocks, 0.25))
     first, second = (carry(model, start, 30.0, solver=solver)[1] for solver in SOLVERS)
@@ -38,8 +38,10 @@ def test_mean_distance_outside_chaos(initial):
     shifted = InitialState("shifted", (state.position[0] + 1e-12, *state.position[1:]), state.velocity)
     compared = 0
     for a in np.arange(0.0, 0.3001, 0.02):
-        first, second = (simulate("linearized", a, initial, solver=solver, events="none") for solver in SOLVERS)
-        if abs(simulate("linearized", a, shifted, events="none").mean_distance - first.mean_distance) > 1e-9:
+        first, second = (
+            simulate(Model("linearized", a=a), initial, solver=solver, events="none") for solver in SOLVERS
+        )
+        if abs(simulate(Model("linearized", a=a), shifted, events="none").mean_distance - first.mean_distance) > 1e-9:
             continue
         compared += 1
         assert first.mean_distance == pytest.approx(second.mean_distance, rel=0, abs=1e-11), a
@@ -50,14 +52,15 @@ def test_mean_distance_outside_chaos(initial):
 @pytest.mark.parametrize(("initial", "a"), [("minus", 0.08), ("plus", 0.08), ("plus", 0.3)])
 def test_exponents(initial, a):
     runs = [
-        simulate("linearized", a, initial, solver=solver, events="none", lyapunov_exponents=4) for solver in SOLVERS
+        simulate(Model("linearized", a=a), initial, solver=solver, events="none", lyapunov_exponents=4)
+        for solver in SOLVERS
     ]
     assert np.allclose(*(run.lyapunov_exponent for run in runs), rtol=0.0, atol=1e-8)
 
 
 @pytest.mark.parametrize("contact", CONTACTS)
 def test_perturbations(contact):
-    model = Model(Chain(3), law_of("linearized", 0.12), contact=contact)
+    model = Model("linearized", a=0.12, contact=contact)
     start = model.begin(PAPER_STATES["plus"])
     (first, events), (second, _) = (carry(model, start, 60.0, directions(start), solver) for solver in SOLVERS)
     assert len(events) > 40
@@ -76,8 +79,8 @@ def test_perturbations(contact):
 )
 def test_models_without_a_closed_form_are_refused(law, a, chain):
     with refused("solver: 'map'"):
-        Runner(Model(chain, law_of(law, a)), "map")
+        Runner(Model(law, a=a, chain=chain), "map")
 
 
 def test_the_series_solver_needs_no_closed_form():
-    assert simulate("linearized", 2.5, "minus", transient=5.0, window=20.0).status in ("completed", "diverged")
+    assert simulate(Model("linearized", a=2.5), "minus", transient=5.0, window=20.0).status in ("completed", "diverged")

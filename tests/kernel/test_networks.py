@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff import Chain, ChainState, Model
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from tests.flows import carry, differences, directions
@@ -35,7 +35,7 @@ def rest(model, seed=2):
 
 @pytest.mark.parametrize("chain", CHAINS)
 def test_perturbations_against_differences(law, chain):
-    model = Model(chain, law_of(law, 0.2))
+    model = Model(law, a=0.2, chain=chain)
     start = rest(model, 3)
     perturbations = carry(model, start, 6.0, directions(start))[0].perturbations
     expected = differences(model, start, 6.0, 1e-4)
@@ -56,7 +56,7 @@ def test_a_grid_with_two_couplings_moves_as_the_network_of_a_file(tmp_path, side
     results = []
     for chain in (grid, Chain(springs=str(path), pulling=1.0)):
         assert np.array_equal(chain.stiffness, grid.stiffness)
-        model = Model(chain, law_of("nonlinear", 0.2))
+        model = Model("nonlinear", a=0.2, chain=chain)
         runner = Runner(model, keep_events=True)
         runner.begin(rest(model))
         assert runner.run(8.0) == Status.COMPLETED

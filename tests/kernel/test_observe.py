@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, law_of, simulate
+from burridge_knopoff import InitialState, Model, simulate
 from burridge_knopoff.running.runner import Runner, new_observer
 from tests.flows import wave
 
@@ -11,7 +11,8 @@ from tests.flows import wave
 def dense(law, a, initial, solver="series"):
     """Run to τ = 60 with a point of the trajectory every millisecond; the window begins at 10."""
     window = {"transient": 10.0, "window": 50.0, "batches": 2, "sampling": 0.5, "events": "all"}
-    return simulate(law, a, initial, solver=solver, trajectory=60.0, trajectory_sampling=1e-3, **window)
+    model = Model(law, a=a, blocks=len(initial.position) if isinstance(initial, InitialState) else 3)
+    return simulate(model, initial, solver=solver, trajectory=60.0, trajectory_sampling=1e-3, **window)
 
 
 def check_crossings(run):
@@ -39,7 +40,7 @@ def test_section_of_other_chains(law, blocks):
 
 
 def test_a_crossing_between_two_pieces_counts_once():
-    model = Model(Chain(3), law_of("linearized", 0.1))
+    model = Model("linearized", a=0.1)
     generator = np.random.default_rng(1)
 
     def crossings(start, *cuts):
@@ -85,7 +86,7 @@ def test_sampled_distance(run):
 
 
 def test_extremes(run):
-    speed, a = run.velocity.max(), run.model.a
+    speed, a = run.velocity.max(), run.model.parameter("a")
     friction = 1.0 - a * speed if run.model.law.name == "linearized" else 1.0 / (1.0 + a * speed)
     assert friction - 1e-6 < run.least_friction <= friction + 1e-12
     force = run.position @ np.array([[-2.0, 1.0, 0.0], [1.0, -4.0, 1.0], [0.0, 1.0, -2.0]])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff import ChainState, Model, law_of
 from burridge_knopoff.catalogue.events import record_events
 from burridge_knopoff.catalogue.stability import event_exponents, event_multipliers
 from burridge_knopoff.running.runner import Runner
@@ -16,11 +16,11 @@ from tests.kernel.test_catalogue import at_rest, record_catalogue
 from tests.refused import refused
 
 # J. Huang and D. L. Turcotte, Nature 348 (1990) 234: Coulomb friction that drops to 1/1.25 as slip begins.
-COULOMB = law_of("carlson_langer", 0.0, {"sigma": 0.2})
+COULOMB = law_of("carlson_langer", a=0.0, sigma=0.2)
 
 
 def two_blocks(coupling=3.25, v=0.01):
-    return Model(Chain(2, coupling=coupling, pulling=1.0, threshold=(1.0, 2.25)), COULOMB, v)
+    return Model(COULOMB, blocks=2, coupling=coupling, pulling=1.0, threshold=(1.0, 2.25), v=v)
 
 
 def resting(model, position, time=0.0):
@@ -127,7 +127,7 @@ def test_exponents_are_those_of_the_multipliers():
 
 @pytest.mark.parametrize("groups", [False, True])
 def test_mirror_images_start_together(groups):
-    model = Model(Chain(8, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.0, {"sigma": 0.05}), 0.01)
+    model = Model("carlson_langer", a=1.0, sigma=0.05, blocks=8, coupling=3.0, pulling=1.0, v=0.01)
     half = np.array([-0.61, -0.83, -0.72, -0.94])
     _, runner, _ = record_catalogue(model, resting(model, [*half, *half[::-1]]), 300.0, groups, loading="quasistatic")
     assert len(runner.events()[0]) > 40
@@ -136,7 +136,7 @@ def test_mirror_images_start_together(groups):
 
 @pytest.mark.parametrize("groups", [False, True])
 def test_forces_and_displacements_balance(groups):
-    model = Model(Chain(12, coupling=5.0, pulling=1.0), law_of("carlson_langer", 1.0), 0.02)
+    model = Model("carlson_langer", a=1.0, blocks=12, coupling=5.0, pulling=1.0, v=0.02)
     start = at_rest(model)
     table, runner, (_, block, slip, _) = record_catalogue(model, start, 200.0, groups, loading="quasistatic")
     moved = runner.state().position - start.position + model.v * 200.0
@@ -147,7 +147,7 @@ def test_forces_and_displacements_balance(groups):
 @pytest.mark.parametrize("groups", [False, True])
 def test_the_released_energy_is_what_the_springs_lose(groups):
     """The driver stops, and does no work, while blocks slip."""
-    model = Model(Chain(12, coupling=5.0, pulling=1.0), law_of("carlson_langer", 1.0), 0.02)
+    model = Model("carlson_langer", a=1.0, blocks=12, coupling=5.0, pulling=1.0, v=0.02)
     start = resting(model, np.random.default_rng(1).uniform(-0.9, -0.6, 12))
     table, _, _ = record_catalogue(model, start, 60.0, groups, loading="quasistatic")
     assert len(table["time"]) > 10
@@ -165,7 +165,7 @@ def test_the_released_energy_is_what_the_springs_lose(groups):
 
 
 def test_groups_and_the_chain_as_a_whole_have_the_same_events():
-    model = Model(Chain(40, coupling=20.0, pulling=1.0), law_of("carlson_langer", 2.0), 0.01)
+    model = Model("carlson_langer", a=2.0, blocks=40, coupling=20.0, pulling=1.0, v=0.01)
     grouped, ungrouped = (
         record_catalogue(model, at_rest(model), 30.0, groups, loading="quasistatic")[0] for groups in (True, False)
     )
@@ -176,7 +176,7 @@ def test_groups_and_the_chain_as_a_whole_have_the_same_events():
 
 @pytest.mark.parametrize("blocks", [3, 40])
 def test_consecutive_runs_have_the_catalogue_of_the_whole_run(blocks):
-    model = Model(Chain(blocks, coupling=20.0, pulling=1.0), law_of("carlson_langer", 2.0), 0.01)
+    model = Model("carlson_langer", a=2.0, blocks=blocks, coupling=20.0, pulling=1.0, v=0.01)
     whole = record_events(model, at_rest(model), 400.0, loading="quasistatic")
     parts, at = [], at_rest(model)
     for end in (37.7, 101.0, 400.0):
@@ -190,6 +190,6 @@ def test_consecutive_runs_have_the_catalogue_of_the_whole_run(blocks):
 
 
 def test_friction_that_does_not_drop_is_refused():
-    model = Model(Chain(3), law_of("nonlinear", 0.1))
+    model = Model("nonlinear", a=0.1)
     with refused("loading", "nonlinear"):
         record_events(model, at_rest(model), 10.0, loading="quasistatic")

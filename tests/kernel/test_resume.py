@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff import Chain, ChainState, Model
 from burridge_knopoff.catalogue.events import record_events
 from burridge_knopoff.catalogue.stability import event_exponents, event_multipliers
 from burridge_knopoff.kernel._core import Catalogue, Exponents
@@ -37,7 +37,9 @@ def symmetric_cases(draw, loadings=("steady", "quasistatic")):
     else:
         chain = Chain(draw(st.integers(3, 60)), ends=form, **springs)
         image = np.arange(chain.blocks)[::-1]
-    model = Model(chain, law_of(law, LAWS[law]), 10.0 ** draw(st.floats(-2.0, -0.7)), draw(st.sampled_from(CONTACTS)))
+    model = Model(
+        law, a=LAWS[law], chain=chain, v=10.0 ** draw(st.floats(-2.0, -0.7)), contact=draw(st.sampled_from(CONTACTS))
+    )
     generator = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     drawn = generator.uniform(-1.2, -0.9, model.blocks) / model.chain.driving - model.sliding_offset
     position = drawn[np.minimum(np.arange(model.blocks), image)]
@@ -68,7 +70,7 @@ def test_a_state_that_is_its_own_mirror_image_stays_so(case, groups):
 def test_24_blocks_synchronize_exactly():
     """⟨J⟩ was once 0.0104, and exactly 0 for 23 blocks: mirror images were processed one after the other."""
     for blocks in (23, 24):
-        model = Model(Chain(blocks, coupling=2.0, pulling=1.0), law_of("exponential", 0.3), 0.01)
+        model = Model("exponential", a=0.3, blocks=blocks, coupling=2.0, pulling=1.0, v=0.01)
         half = np.random.default_rng(1).uniform(-0.9, -0.5, (blocks + 1) // 2)
         position = np.concatenate([half, half[: blocks // 2][::-1]]) - model.sliding_offset
         start = ChainState(position, np.zeros(blocks), np.ones(blocks, dtype=bool))
@@ -98,7 +100,7 @@ def test_a_run_in_parts_equals_the_whole_run_to_the_bit(case, groups, cuts):
 @pytest.mark.parametrize("groups", [True, False])
 def test_runs_of_length_zero_change_nothing(groups):
     """They once changed a bit of a crossing."""
-    model = Model(Chain(3, 1.1, 1.0, ends="ring"), law_of("linearized", 0.3), 0.03)
+    model = Model("linearized", a=0.3, chain=Chain(3, 1.1, 1.0, ends="ring"), v=0.03)
     for seed in range(40):
         position = np.random.default_rng(seed).uniform(-1.2, -0.9, 3) - model.sliding_offset
         start = ChainState(position, np.zeros(3), np.ones(3, dtype=bool))
@@ -114,7 +116,7 @@ def test_runs_of_length_zero_change_nothing(groups):
 
 def test_a_run_may_be_divided_within_its_first_piece():
     """At this point the side of the section is still unknown."""
-    model = Model(Chain(3, 1.78, 1.0), law_of("linearized", 0.3), 0.056)
+    model = Model("linearized", a=0.3, chain=Chain(3, 1.78, 1.0), v=0.056)
     for seed in range(130):
         ends, middle = np.random.default_rng(seed).uniform(-1.2, -0.9, 2)
         position = np.array([ends, middle, ends]) - model.sliding_offset
@@ -163,7 +165,7 @@ def ends_after(model, start, loading):
 def test_a_state_can_be_continued_in_any_mode(blocks, loading, seed, legs):
     """The mode changes and changes back, over a time in which rounding errors remain small."""
     law = DROP if loading == "quasistatic" else "nonlinear"
-    model = Model(Chain(blocks, coupling=3.0, pulling=1.0), law_of(law, 1.0), 0.05)
+    model = Model(law, a=1.0, blocks=blocks, coupling=3.0, pulling=1.0, v=0.05)
     position = np.random.default_rng(seed).uniform(-1.1, -0.7, blocks) / model.chain.driving - model.sliding_offset
     start = state = ChainState(position, np.zeros(blocks), np.ones(blocks, dtype=bool), time=-3.0)
     duration = (ends_after(model, start, loading) - start.time) / sum(share for _, share in legs)
@@ -176,7 +178,7 @@ def test_a_state_can_be_continued_in_any_mode(blocks, loading, seed, legs):
 
 def test_slip_events_can_be_continued_in_any_mode():
     """An event in progress when the mode changes keeps its slips."""
-    model = Model(Chain(30, coupling=5.0, pulling=1.0), law_of(DROP, 2.0), 0.02)
+    model = Model(DROP, a=2.0, blocks=30, coupling=5.0, pulling=1.0, v=0.02)
     position = np.random.default_rng(2).uniform(-0.95, -0.6, 30) - model.sliding_offset
     start = ChainState(position, np.zeros(30), np.ones(30, dtype=bool))
     tables = []
@@ -201,7 +203,7 @@ def test_slip_events_can_be_continued_in_any_mode():
 @pytest.mark.slow
 def test_the_end_of_a_catalogue_is_accepted_wherever_a_state_is():
     """Each of these once ended in a segmentation fault from 24 blocks on."""
-    model = Model(Chain(30, coupling=3.0, pulling=1.0), law_of(DROP, 1.0), 0.05)
+    model = Model(DROP, a=1.0, blocks=30, coupling=3.0, pulling=1.0, v=0.05)
     position = np.random.default_rng(3).uniform(-1.0, -0.7, 30) - model.sliding_offset
     start = ChainState(position, np.zeros(30), np.ones(30, dtype=bool))
     for loading in ("steady", "quasistatic"):

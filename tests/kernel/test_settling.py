@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq, minimize_scalar
 
-from burridge_knopoff import Chain, ChainState, InitialState, Model, law_of, simulate, sweep
+from burridge_knopoff import Chain, ChainState, InitialState, Model, simulate, sweep
 from burridge_knopoff.model.model import CONTACTS
 from burridge_knopoff.running.runner import Runner, new_observer, run_together
 from burridge_knopoff.running.settling import LEVELS, distance_rounding
@@ -40,7 +40,7 @@ class Turning:
     """Two blocks that slip freely: d'' = a d' − 3 d, so that J is known in closed form."""
 
     a = 0.1
-    model = Model(Chain(2), law_of("linearized", a))
+    model = Model("linearized", a=a, blocks=2)
 
     def __init__(self):
         sliding = -(1.0 - self.a * 0.1)
@@ -84,14 +84,14 @@ def test_the_closed_form_of_two_blocks():
 
 def test_synchrony_of_the_paper_agrees_with_scipy_and_with_dense_samples():
     """Twice the time 1064.84 of an independent integrator, and J at the settling times by SciPy."""
-    model = Model(Chain(3), law_of("linearized", 0.08))
+    model = Model("linearized", a=0.08)
     for solver in ("series", "map"):
         times, distance, _ = settling(model, model.begin(MINUS), 1500.0, LEVELS, solver=solver, sampling=0.01)
         assert times[2] == pytest.approx(1064.84, abs=0.01)
         for level, time in zip(LEVELS[1:3], times[1:3], strict=True):
             last = 0.01 * np.flatnonzero(distance >= level)[-1]
             assert last <= time <= last + 0.01
-    model = Model(Chain(3), law_of("nonlinear", 0.02))
+    model = Model("nonlinear", a=0.02)
     times, *_ = settling(model, model.begin(MINUS), 200.0, LEVELS[1:3])
     for level, time in zip(LEVELS[1:3], times, strict=True):
         _, (first, _, last, rate, _, end) = model_events(model, model.begin(MINUS), time)
@@ -115,7 +115,7 @@ def test_dense_samples_of_any_chain(blocks, law, contact, power, dashpots, clock
     """
     v, (damping, pulling_damping) = 10.0**power, dashpots
     chain = Chain(blocks, coupling=3.0, pulling=1.0, damping=damping, pulling_damping=pulling_damping)
-    model = Model(chain, law_of(law, LAWS[law]), v, contact)
+    model = Model(law, a=LAWS[law], chain=chain, v=v, contact=contact)
     start = dataclasses.replace(at_rest(model, seed), time=clock)
     end = clock + 0.6 / v + 5.0
     interval = (end - clock) / 4000
@@ -147,7 +147,7 @@ def test_dense_samples_of_any_chain(blocks, law, contact, power, dashpots, clock
 @pytest.mark.parametrize("offset", [-1e-7, -1e-8, -1e-10, 1e-10, 1e-8, 1e-7])
 def test_levels_close_to_the_ends_of_pieces(offset):
     """J at an end, computed as part of a piece only if it is close to a level: in groups and in lanes it always is."""
-    model = Model(Chain(3), law_of("linearized", 0.08))
+    model = Model("linearized", a=0.08)
     start, end = model.begin(MINUS), 400.0
     run = simulate(model, initial=MINUS, transient=0.0, window=end, batches=2, events="all", lyapunov_exponents=0)
     first, last = (np.stack([x[:, block] for x in (run.event_position, run.event_velocity)]) for block in (0, -1))
@@ -170,9 +170,9 @@ def test_a_sweep_has_the_settling_times_of_its_runs():
     """In lanes of different a, of which some synchronize."""
     values = np.linspace(0.01, 0.16, 16)
     options = {**SHORT, "transient": 300.0}
-    runs = sweep("nonlinear", values, "minus", **options)
+    runs = sweep(Model("nonlinear"), "minus", a=values, **options)
     assert runs.level.values.tolist() == list(LEVELS)
-    alone = [simulate("nonlinear", a, "minus", **options).settling_time for a in values]
+    alone = [simulate(Model("nonlinear", a=a), "minus", **options).settling_time for a in values]
     np.testing.assert_array_equal(runs.settling_time.values, alone)
     assert np.isfinite(alone).any()
     assert np.isnan(alone).any()
@@ -181,7 +181,7 @@ def test_a_sweep_has_the_settling_times_of_its_runs():
 def test_levels_of_rounding_are_not_judged():
     """A level that a fast driver's coordinates cannot resolve, in a run of exact synchrony."""
     for v, resolved in ((0.1, 5), (10.0, 4)):
-        model = Model(Chain(3), law_of("linearized", 0.05), v)
+        model = Model("linearized", a=0.05, v=v)
         offset = model.sliding_offset
         state = InitialState("symmetric", tuple(offset + v * np.array([-0.1, 0.2, -0.1])), (v, 1.1 * v, v))
         run = simulate(model, initial=state, **SHORT)
@@ -193,16 +193,16 @@ def test_levels_of_rounding_are_not_judged():
 def test_rounding_stays_below_the_level_that_is_judged():
     """Also near a_c, where synchrony damps it slowly."""
     for law, a in (("linearized", 0.08), ("nonlinear", 0.08), ("nonlinear", 0.0855)):
-        model = Model(Chain(3), law_of(law, a))
+        model = Model(law, a=a)
         _, distance, state = settling(model, model.begin(MINUS), 20_000.0, (), sampling=0.37)
         assert distance[40_000:].max() < 0.2 * distance_rounding(model, state)
 
 
 def test_a_run_that_does_not_complete_has_no_settling_times():
-    run = simulate("linearized", 0.05, "minus", **SHORT)
+    run = simulate(Model("linearized", a=0.05), "minus", **SHORT)
     assert np.isfinite(run.settling_time[:3]).all()
     assert (run.settling_time[:3] < 200.0).all()
     state = ChainState(np.array([0.0, 3e4, 0.0]), np.zeros(3), np.zeros(3, dtype=bool))
-    diverged = simulate(Model(Chain(3), law_of("linearized", 3.0)), initial=state, **SHORT)
+    diverged = simulate(Model("linearized", a=3.0), initial=state, **SHORT)
     assert diverged.status != "completed"
     assert np.isnan(diverged.settling_time).all()

@@ -12,7 +12,7 @@ from tests.kernel.test_quasistatic import resting
 
 GROUPS = pytest.mark.parametrize("groups", [False, True])
 DROP, WEAKENING = 0.1, 0.5
-LAW = FormulaLaw(WEAKENING, "0.9 - a*u")
+LAW = FormulaLaw("0.9 - a*u", a=WEAKENING)
 
 # Below critical damping by a share, where slips stop.
 BELOW = (0.7, 0.3, 0.05, 0.03, 0.02, 5e-3, 5e-4, 5e-6, 5e-10)
@@ -31,7 +31,7 @@ def damped_block(blocks, mass, stiffness, threshold, share):
     drag = 2.0 * (1.0 - share) * np.sqrt(stiffness * mass) + threshold * WEAKENING
     ring = {"ends": "ring", "coupling": 1.7, "damping": 0.6} if blocks > 1 else {}
     chain = Chain(blocks, pulling=stiffness, pulling_damping=drag, mass=mass, threshold=threshold, **ring)
-    return Model(chain, LAW, 0.01)
+    return Model(LAW, chain=chain, v=0.01)
 
 
 @pytest.mark.parametrize("share", BELOW)
@@ -170,7 +170,7 @@ def test_several_blocks_near_critical_damping_change_as_exact_motion_does(seed, 
     weakening = np.resize(factors, blocks)
     damping = tuple(drag + WEAKENING * weakening)
     options = {"damping": between, "pulling_damping": damping, "weakening": weakening, **ends}
-    model = Model(Chain(blocks, coupling=tuple(coupling), pulling=tuple(pulling), **options), LAW, 1.0)
+    model = Model(LAW, blocks=blocks, coupling=tuple(coupling), pulling=tuple(pulling), **options, v=1.0)
     exact = ExactMotion(model, -np.linalg.solve(model.chain.stiffness, generator.uniform(0.7, 0.95, blocks)))
     _, runner, _ = record_catalogue(model, resting(model, exact.x), 0.8, groups, loading="quasistatic")
     exact.advance(0.8)
@@ -193,7 +193,7 @@ def test_a_slip_that_stops_late_removes_all_perturbations():
 def test_a_block_without_a_spring_to_the_driver_stops_below_critical_damping(share, groups):
     """Behind a driver that moves too: its neighbour loads it again, and only above critical damping it slips on."""
     drag = (0.0, 2.0 * (1.0 - share) + WEAKENING)
-    model = Model(Chain(2, coupling=1.0, pulling=(1.0, 0.0), pulling_damping=drag), LAW, 1e-4)
+    model = Model(LAW, blocks=2, coupling=1.0, pulling=(1.0, 0.0), pulling_damping=drag, v=1e-4)
     start = resting(model, (0.0, -0.5))
     changes = []
     for loading in ("quasistatic", "steady"):

@@ -5,12 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Chain, Model
 from burridge_knopoff.running.kernel_model import kernel_model
 
 
 def fastest(chain):
-    return kernel_model(Model(chain, law_of("nonlinear", 0.1))).fastest
+    return kernel_model(Model("nonlinear", a=0.1, chain=chain)).fastest
 
 
 @given(st.integers(2, 20), st.integers(0, 2**32 - 1), st.sampled_from(["open", "ring"]))

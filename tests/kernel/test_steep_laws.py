@@ -2,7 +2,7 @@
 
 import pytest
 
-from burridge_knopoff import Chain, FormulaLaw, Model
+from burridge_knopoff import FormulaLaw, Model
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.runner import Runner
@@ -23,13 +23,13 @@ FORMULAS = {
 @pytest.mark.parametrize("name", FORMULAS)
 def test_lanes_against_one_state(name, w):
     """The orders of their series differ, and so do their steps."""
-    model = Model(Chain(3), FormulaLaw(0.1, FORMULAS[name], w=w))
+    model = Model(FormulaLaw(FORMULAS[name], w=w, **{"a": 0.1} if "a*u" in FORMULAS[name] else {}))
     assert check_against_scalar(model, new_ensemble(model), 20, 6.0) > 50
 
 
 def test_a_negligible_exponential_costs_no_steps():
     """Its argument changes by millions while the block slips."""
-    model = Model(Chain(3), FormulaLaw(0.1, FORMULAS["gaussian"], w=1e-4))
+    model = Model(FormulaLaw(FORMULAS["gaussian"], a=0.1, w=1e-4))
     runner = Runner(model)
     runner.begin(model.begin(PAPER_STATES["minus"]))
     runner.run(20.0)

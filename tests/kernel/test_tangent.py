@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.linalg import block_diag, expm
 
-from burridge_knopoff import Chain, ChainState, FormulaLaw, Model, law_of
+from burridge_knopoff import Chain, ChainState, FormulaLaw, Model
 from burridge_knopoff.kernel._core import Exponents
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import CONTACTS
@@ -85,14 +85,14 @@ def test_nonlinear_pieces_against_scipy(blocks, damping, amplitude, end):
 
     An absolute 1e-18 lets SciPy follow the smallest of these motions; its error is 1e-13 of the map per unit of time.
     """
-    model = Model(Chain(blocks, damping=damping, pulling_damping=0.1 * damping), law_of("nonlinear", 0.3))
+    model = Model("nonlinear", a=0.3, blocks=blocks, damping=damping, pulling_damping=0.1 * damping)
     start = ChainState(*near_sliding(blocks, amplitude), np.zeros(blocks, dtype=bool))
     expected = variational(model, start, end)
     assert np.abs(without_events(model, start, end) - expected).max() < 1e-11 * np.abs(expected).max()
 
 
 def test_a_nonlinear_piece_with_stuck_blocks_and_backward_slip_against_scipy():
-    model = Model(Chain(5), law_of("nonlinear", 0.9), contact="symmetric")
+    model = Model("nonlinear", a=0.9, blocks=5, contact="symmetric")
     velocity = np.array([0.8, 0.0, 0.9, 0.0, -0.7])
     start = ChainState(np.array([0.1, 0.3, 0.0, 0.3, -0.1]), velocity, velocity == 0.0)
     assert np.abs(without_events(model, start, 0.2) - variational(model, start, 0.2)).max() < 1e-12
@@ -110,6 +110,11 @@ STEEPER = {
 }
 
 
+def steeper(name):
+    law = FormulaLaw(STEEPER[name])
+    return law.at(**dict.fromkeys(law.missing, 0.3))
+
+
 @pytest.mark.parametrize("name", STEEPER)
 @pytest.mark.parametrize("weakening", [1.0, (1.0, 0.0, -0.2, 1.05)])
 @pytest.mark.parametrize("damping", [0.0, (0.1, 0.3, 0.2)])
@@ -118,7 +123,7 @@ def test_laws_that_are_steeper_than_at_rest_against_scipy(name, weakening, dampi
     chain = Chain(
         4, 1.3, damping=damping, mass=(1.0, 2.0, 0.7, 1.0), threshold=(1.0, 1.2, 0.8, 1.0), weakening=weakening
     )
-    model = Model(chain, FormulaLaw(0.3, STEEPER[name]), 0.5, contact="symmetric")
+    model = Model(steeper(name), chain=chain, v=0.5, contact="symmetric")
     start = ChainState(np.array([-0.8, 0.3, 0.2, 0.0]), np.array([1.1, 0.8, 0.0, -0.9]), np.arange(4) == 2)
     exact = variational(model, start, 0.25)
     runner, events = carry(model, start, 0.25, directions(start))
@@ -132,7 +137,7 @@ def test_laws_that_are_steeper_than_at_rest_against_scipy(name, weakening, dampi
 @pytest.mark.parametrize("blocks", [3, 24])
 def test_slopes_that_no_block_reaches_cost_nothing(name, groups, blocks):
     """Under `power 6` every piece was once divided into hundreds of parts."""
-    model = Model(Chain(blocks), FormulaLaw(0.3, STEEPER[name]), 0.5)
+    model = Model(steeper(name), blocks=blocks, v=0.5)
     exponents = Exponents(blocks, 3, 0.0, np.array([0.0, 20.0]))
     runner = Runner(model, groups=groups, exponents=exponents)
     runner.begin(model.begin(wave(blocks)))
@@ -144,7 +149,7 @@ def test_slopes_that_no_block_reaches_cost_nothing(name, groups, blocks):
 @pytest.mark.parametrize(("stuck", "end", "amplitude"), PIECES)
 def test_linearized_pieces_against_the_matrix_exponential(solver, damping, stuck, end, amplitude):
     blocks, a = 5, 0.3
-    model = Model(Chain(blocks, damping=damping), law_of("linearized", a))
+    model = Model("linearized", a=a, blocks=blocks, damping=damping)
     held = np.isin(np.arange(blocks), stuck)
     position, velocity = near_sliding(blocks, amplitude)
     start = ChainState(position + 0.3 * held, np.where(held, 0.0, velocity), held)
@@ -177,7 +182,7 @@ def drawn(generator, blocks, law, contact):
     """Return a random model, and a state with stuck blocks and, where the contact allows, blocks that slip backward."""
     dashpots = generator.uniform(0.0, 0.5, 2) * (generator.random() < 0.5)
     chain = Chain(blocks, damping=float(dashpots[0]), pulling_damping=float(dashpots[1]))
-    model = Model(chain, law_of(law, generator.uniform(0.0, 0.6)), generator.uniform(0.02, 0.4), contact)
+    model = Model(law, a=generator.uniform(0.0, 0.6), chain=chain, v=generator.uniform(0.02, 0.4), contact=contact)
     position = generator.uniform(-0.6, 0.6, blocks)
     velocity = generator.uniform(0.02 if contact == "one_sided" else -0.6, 0.6, blocks)
     velocity[np.abs(velocity) < 0.02] = 0.1
@@ -232,7 +237,7 @@ def test_every_kind_of_event_occurs(law):
 @pytest.mark.parametrize("contact", CONTACTS)
 def test_mirror_blocks_that_stop_and_start_together(law, contact):
     """The flow is smooth there although perturbed runs have the events in either order."""
-    model = Model(Chain(3), law_of(law, 0.08), contact=contact)
+    model = Model(law, a=0.08, contact=contact)
     events = check_against_differences(model, model.begin(SYMMETRIC), 20.0)
     assert events is not None
     stops = [time for time, block, kind in events if kind == 0 and block != 2]
@@ -273,7 +278,7 @@ def test_starts_of_a_stiff_chain_on_soft_springs(coupling, pulling, v, damping):
     Friction drops at the start, so that without that a perturbation of the start is lost.
     """
     chain = Chain(3, coupling, pulling, damping=damping)
-    model = Model(chain, FormulaLaw(0.3, "(1 - drop)*exp(-a*u)", drop=0.05), v)
+    model = Model(FormulaLaw("(1 - drop)*exp(-a*u)", a=0.3, drop=0.05), chain=chain, v=v)
     generator = np.random.default_rng(1)
     starts = 0
     for _ in range(6):
@@ -291,7 +296,7 @@ def test_starts_of_a_stiff_chain_on_soft_springs(coupling, pulling, v, damping):
 @pytest.mark.parametrize("count", [1, 2, 3, 5, 6])
 def test_each_vector_is_independent_of_the_others(law, count):
     """The same bits for the first vectors, however many are carried."""
-    model = Model(Chain(3), law_of(law, 0.15), contact="symmetric")
+    model = Model(law, a=0.15, contact="symmetric")
     start = model.begin(PAPER_STATES["plus"])
     some = carry(model, start, 30.0, directions(start)[:, :count])[0].perturbations
     assert some.shape == (6, count)
@@ -299,7 +304,7 @@ def test_each_vector_is_independent_of_the_others(law, count):
 
 
 def test_perturbations_change_nothing_of_the_run(law):
-    model = Model(Chain(3), law_of(law, 0.2))
+    model = Model(law, a=0.2)
     start = model.begin(PAPER_STATES["plus"])
     (perturbed, events), (bare, events_bare) = (
         carry(model, start, 100.0, basis) for basis in (directions(start), None)
@@ -311,7 +316,7 @@ def test_perturbations_change_nothing_of_the_run(law):
 
 def test_a_solver_that_begins_again_forgets_its_stops(law):
     """A start at τ = 0 is not a reversal after a stop in the previous run."""
-    model = Model(Chain(2), law_of(law, 0.1))
+    model = Model(law, a=0.1, blocks=2)
     # Held beyond their thresholds until τ = 0.
     held = ChainState(np.array([-0.4, -0.5]), np.zeros(2), np.ones(2, dtype=bool))
     used = Runner(model, perturbations=np.eye(4))
@@ -325,6 +330,6 @@ def test_a_solver_that_begins_again_forgets_its_stops(law):
 
 def test_perturbations_while_all_blocks_stick():
     """Under a slow driver only perturbations of positions remain, and these are constant."""
-    model = Model(Chain(3), law_of("nonlinear", 0.1), v=1e-5)
+    model = Model("nonlinear", a=0.1, v=1e-5)
     start = ChainState(np.array([0.2, 0.21, 0.22]), np.zeros(3), np.ones(3, dtype=bool))
     assert (tangent_map(model, start, 10.0) == block_diag(np.eye(3), np.zeros((3, 3)))).all()

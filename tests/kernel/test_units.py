@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from burridge_knopoff import Chain, Model, law_of, simulate
+from burridge_knopoff import Chain, Model, simulate
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.running.ensemble import new_ensemble
 from tests.flows import wave
@@ -30,7 +30,8 @@ def test_shorter_units_of_time_and_length_change_no_bit(blocks, law, symmetric, 
     """Springs 2ⁿ times as stiff, masses 2ⁿ times as light: everything is 2ⁿ times as fast and as short."""
     factor, contact = 2.0**power, "symmetric" if symmetric else "one_sided"
     ends = [
-        Model(Chain(blocks, size, size, mass=1.0 / size), law_of(law, 0.3), 0.125, contact) for size in (1.0, factor)
+        Model(law, a=0.3, chain=Chain(blocks, size, size, mass=1.0 / size), v=0.125, contact=contact)
+        for size in (1.0, factor)
     ]
     initial = wave(blocks)
     short = InitialState("short", tuple(np.array(initial.position) / factor), initial.velocity)
@@ -44,8 +45,8 @@ def test_shorter_units_of_time_and_length_change_no_bit(blocks, law, symmetric, 
 def test_a_stiff_light_block_moves_as_one_of_the_paper():
     """(pulling, mass, a, v) = (1e6, 0.05, 22.36, 4.47e-4) is (1, 1, 0.1, 0.1) in other units."""
     time, length = (0.05 / 1e6) ** 0.5, 1e-6
-    paper_model = Model(Chain(1, pulling=1.0), law_of("linearized", 0.1), 0.1)
-    stiff = Model(Chain(1, pulling=1e6, mass=0.05), law_of("linearized", 0.1 * time / length), 0.1 * length / time)
+    paper_model = Model("linearized", a=0.1, blocks=1, pulling=1.0, v=0.1)
+    stiff = Model("linearized", a=0.1 * time / length, blocks=1, pulling=1e6, mass=0.05, v=0.1 * length / time)
     paper_run = run_of(paper_model, ((-0.9,), (0.1,)), 200.0)
     other = run_of(stiff, ((-0.9 * length,), (0.1 * length / time,)), 200.0 * time)
     assert other.status == "completed"
@@ -66,7 +67,7 @@ def test_exponents_of_a_fast_chain():
     factor, initial = 1024.0, wave(3)
     short = InitialState("short", tuple(np.array(initial.position) / factor), initial.velocity)
     paper, fast = (
-        Model(Chain(3, size, (size, 2.0 * size, size), mass=1.0 / size), law_of("linearized", 0.2), 0.125)
+        Model("linearized", a=0.2, chain=Chain(3, size, (size, 2.0 * size, size), mass=1.0 / size), v=0.125)
         for size in (1.0, factor)
     )
     slow_run, fast_run = run_of(paper, initial, 4000.0, 3), run_of(fast, short, 4000.0 / factor, 3)

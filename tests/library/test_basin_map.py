@@ -13,14 +13,14 @@ from tests.refused import refused
 
 def test_defaults_are_those_of_the_config():
     defaults = {"pixels": 64, "samples": 100, "seed": 1, "cores": None}
-    defaults |= {"v": None, "contact": None, "start": "moving"}
+    defaults |= {"start": "moving"}
     parameters = inspect.signature(basin_map).parameters
     assert {name: parameters[name].default for name in defaults} == defaults
 
 
 def test_labels_are_those_of_whole_runs():
     basins, attractors = basin_map(
-        "linearized", 0.08, pixels=3, samples=100, first_position=(-1.2, 1.2), last_position=(-1.5, 0.5)
+        Model("linearized", a=0.08), pixels=3, samples=100, first_position=(-1.2, 1.2), last_position=(-1.5, 0.5)
     )
     part = attractors.sel(law="linearized", a=0.08)
     mean = dict(zip(part["branch"].values.tolist(), part["mean_distance"].values.tolist(), strict=True))
@@ -30,7 +30,7 @@ def test_labels_are_those_of_whole_runs():
     minus = PAPER_STATES["minus"]
     for last, first in product(plane["last_position"].values, plane["first_position"].values):
         state = InitialState("pixel", (first, minus.position[1], last), minus.velocity)
-        run = simulate("linearized", 0.08, state, transient=3000, window=1000, batches=4, lyapunov_exponents=0)
+        run = simulate(Model("linearized", a=0.08), state, transient=3000, window=1000, batches=4, lyapunov_exponents=0)
         branch = plane["branch"].sel(first_position=first, last_position=last).item()
         assert run.mean_distance == pytest.approx(mean[branch], abs=2e-3)
 
@@ -38,35 +38,32 @@ def test_labels_are_those_of_whole_runs():
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"law": "cubic"}, "law: 'cubic'"),
-        ({"a": None}, "a: None"),
-        ({"a": -1.0}, "a: -1.0"),
-        ({"a": 0.0}, "transient"),
+        ({"model": Model("linearized")}, "a: missing"),
+        ({"model": Model("linearized", a=0.0)}, "transient"),
         ({"initial": "middle"}, "initial: 'middle'"),
-        ({"v": 0.0}, "v: 0.0"),
         ({"start": "soon"}, "start: 'soon'"),
         ({"pixels": 0}, "pixels: 0"),
         ({"cores": 0}, "cores: 0"),
         ({"first_position": (1.0, 1.0)}, "first_position"),
         ({"window": 0.0}, "window: 0.0"),
         ({"windows": 10.0}, "windows"),
-        ({"chain": Chain(4)}, "blocks: 4"),
-        ({"initial": InitialState("back", (0.0, 0.0), (0.1, -0.1))}, "velocity: -0.1"),
+        ({"model": Model("linearized", a=0.08, blocks=4)}, "blocks: 4"),
+        ({"initial": InitialState("back", 0.0, (0.1, 0.1, -0.1))}, "velocity: -0.1"),
     ],
 )
 def test_bad_input_is_refused_in_one_line(options, words):
     with refused(words):
-        basin_map(**{"law": "linearized", "a": 0.08, "pixels": 2, "samples": 3, **options})
+        basin_map(**{"model": Model("linearized", a=0.08), "pixels": 2, "samples": 3, **options})
 
 
 @pytest.mark.slow
 def test_a_map_for_any_model():
     """Labels of a map for a law by formula in an asymmetric chain, and of its equivalent short form."""
-    law = FormulaLaw(0.1, "1/(1 + a*u)**p", p=1.2)
+    law = FormulaLaw("1/(1 + a*u)**p", a=0.1, p=1.2)
     chain = Chain(3, coupling=(1.0, 1.2))
     options = {"pixels": 4, "samples": 10, "transient": 1000.0, "window": 1000.0}
-    basins, attractors = basin_map(Model(chain, law, v=0.12), **options)
-    again = basin_map(law.at(0.5), 0.1, chain=chain, v=0.12, **options)
+    basins, attractors = basin_map(Model(law, chain=chain, v=0.12), **options)
+    again = basin_map(Model(law.at(a=0.5), a=0.1, coupling=(1.0, 1.2), v=0.12), **options)
     assert basins.identical(again[0])
     assert attractors.identical(again[1])
     assert attractors["law"].values.tolist() == ["formula"]

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, law_of, record_events, simulate
+from burridge_knopoff import Chain, InitialState, Model, record_events, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.summaries.catalogue import summarize
 from tests.kernel.test_catalogue import at_rest
 from tests.refused import refused
 
-MODEL = Model(Chain(20, coupling=9.0, pulling=1.0), law_of("carlson_langer", 3.0), 0.01)
+MODEL = Model("carlson_langer", a=3.0, blocks=20, coupling=9.0, pulling=1.0, v=0.01)
 
 
 def test_a_run_continues_as_a_catalogue():
@@ -42,7 +42,7 @@ def test_the_dataset_and_the_picture():
 
 
 def test_solvers_have_the_same_events():
-    model = Model(Chain(3), law_of("linearized", 0.1), 0.1)
+    model = Model("linearized", a=0.1, v=0.1)
     start = model.begin(PAPER_STATES["minus"])
     series, closed = (record_events(model, start, 300.0, solver=solver) for solver in ("series", "map"))
     assert len(series.time) > 20
@@ -52,7 +52,7 @@ def test_solvers_have_the_same_events():
 
 def test_a_run_that_ends_early_has_no_rates():
     """Backward slip under the linearized law grows without limit."""
-    model = Model(Chain(3), law_of("linearized", 2.5), 0.1, "symmetric")
+    model = Model("linearized", a=2.5, v=0.1, contact="symmetric")
     catalogue = record_events(model, model.begin(InitialState("own", (-1.0, -0.5, -0.8), (0.1, 0.0, 0.2))), 1000.0)
     assert catalogue.status.name == "DIVERGED"
     summary = summarize([catalogue.to_dataset()], ["linearized"], [2.5])
@@ -73,7 +73,7 @@ def test_recurrence_on_grids_and_networks(form, tmp_path):
         chain = Chain(springs=str(tmp_path / "star.txt"), pulling=1)
     else:
         chain = Chain(grid=(4, 3), coupling=9, pulling=1)
-    model = Model(chain, law_of("carlson_langer", 3.0), v=0.01)
+    model = Model("carlson_langer", a=3.0, chain=chain, v=0.01)
     catalogues = [record_events(model, at_rest(model), 600.0, profiles=profiles) for profiles in (True, False)]
     summary, unknown = (
         summarize([catalogue.to_dataset()], ["carlson_langer"], [3.0]).isel(law=0, a=0) for catalogue in catalogues
@@ -103,7 +103,7 @@ def test_recurrence_on_grids_and_networks(form, tmp_path):
 
 
 def test_bars_across_the_seam_of_a_ring():
-    model = Model(Chain(12, coupling=9, pulling=1, ends="ring"), law_of("carlson_langer", 3.0), v=0.01)
+    model = Model("carlson_langer", a=3.0, blocks=12, coupling=9, pulling=1, ends="ring", v=0.01)
     catalogue = record_events(model, at_rest(model), 600.0)
     over = catalogue.first_block > catalogue.last_block
     assert over.any()
@@ -117,7 +117,7 @@ def test_bars_across_the_seam_of_a_ring():
 
 
 def test_without_events():
-    model = Model(Chain(3), law_of("linearized", 0.1), 0.01)
+    model = Model("linearized", a=0.1, v=0.01)
     catalogue = record_events(model, at_rest(model, spread=0.01), 0.01)
     summary = summarize([catalogue.to_dataset()], ["linearized"], [0.1])
     assert summary["event_count"].item() == summary["event_rate"].item() == 0

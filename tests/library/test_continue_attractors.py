@@ -5,7 +5,6 @@ import pytest
 
 from burridge_knopoff import (
     BifurcationKind,
-    Chain,
     ContinuationSettings,
     Model,
     MotionKind,
@@ -14,7 +13,6 @@ from burridge_knopoff import (
     find_attractors,
     follow,
     label_states,
-    law_of,
     locate_bifurcations,
     plot,
     synchronized_orbit,
@@ -34,7 +32,7 @@ A, V, MASS = [0.08, 0.09], [0.05, 0.2], [0.97, 1.03]
 
 def along(parameter, values, a=0.09, law="linearized", **options):
     given = {parameter: values} if parameter == "a" else {"a": a, parameter: values}
-    return continue_attractors(law, **{**QUICK, "refine": 1.0, "cores": 1, **given, **options})
+    return continue_attractors(Model(law), **{**QUICK, "refine": 1.0, "cores": 1, **given, **options})
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +57,7 @@ def test_the_attractors_at_each_value_are_those_of_a_search_there(parameter, val
     stored = {"a": "along_a", "v": "along_v"}.get(parameter)
     data = request.getfixturevalue(stored) if stored else along(parameter, values)
     assert data[plain_name(parameter)].values.tolist() == values
-    model = Model(Chain(3), law_of("linearized", 0.09))
+    model = Model("linearized", a=0.09)
     for value in values:
         at, here = model.at(**{parameter: value}), data.sel({plain_name(parameter): value})
         slots = np.flatnonzero(here["branch"].values >= 0)
@@ -89,7 +87,7 @@ def test_along_a_the_results_are_those_of_a_study(along_a, tmp_path):
         **motion,
     }
     on_grid, everywhere, _ = attractors_of_law(config, "linearized", 1, tmp_path)
-    model = Model(Chain(3), law_of("linearized", A[0]))
+    model = Model("linearized", a=A[0])
     study = merge([on_grid], branch_numbers([on_grid], [model], SearchSettings(**QUICK))).sel(law="linearized")
     common = {*map(str, study.data_vars)} & {*map(str, along_a.data_vars)}
     assert {"branch", "side", "kind", "basin_fraction", "upward_branch", "branch_name"} <= common
@@ -114,7 +112,7 @@ def test_under_the_linearized_law_motion_is_in_proportion_to_v(along_v):
 def test_fractions_along_v_are_those_of_other_states(along_v):
     """Counted by `label_states` on 400 states of another seed: within the sum of both 95 % intervals."""
     for v in V:
-        here, model = along_v.sel(v=v), Model(Chain(3), law_of("linearized", 0.09), v=v)
+        here, model = along_v.sel(v=v), Model("linearized", a=0.09, v=v)
         settings = SearchSettings(**QUICK)
         attractors, _ = find_attractors(model, settings)
         labels, _ = label_states(model, attractors, *sample_states(3, 400, settings.position, settings.velocity, 99))
@@ -154,7 +152,13 @@ def test_changes_along_a_are_where_orbits_bifurcate():
         ("minus", (0.08, 0.09), MotionKind.SYNCHRONIZED),
         ("plus", (0.08, 0.0815), MotionKind.PERIODIC),
     ):
-        branch = follow("linearized", 0.08, interval, ContinuationSettings(largest_step=2.5e-3), initial=initial)
+        branch = follow(
+            Model("linearized", a=0.08),
+            interval,
+            ContinuationSettings(largest_step=2.5e-3),
+            initial=initial,
+            parameter="a",
+        )
         (bifurcation,) = locate_bifurcations(branch)
         inside(data, kind, bifurcation.a)
 
@@ -166,7 +170,7 @@ def test_changes_along_a_are_where_orbits_bifurcate():
 )
 def test_changes_along_other_parameters_are_where_synchrony_loses_stability(parameter, values, refine, law, a):
     data = along(parameter, values, a, law, refine=refine, transient=3000.0, window=3000.0)
-    orbit = synchronized_orbit(Model(Chain(3), law_of(law, a)).at(**{parameter: values[0]}))
+    orbit = synchronized_orbit(Model(law, a=a).at(**{parameter: values[0]}))
     (bifurcation,) = locate_bifurcations(
         follow(orbit, (values[0], values[1]), ContinuationSettings(largest_step=0.01), parameter=parameter)
     )
@@ -191,15 +195,14 @@ def test_synchrony_ends_where_it_loses_stability_however_slowly(coupling, distan
     """At the nearest value below the period doubling perturbations of synchrony decay at a rate of 2e-4, or 2e-5."""
     law, ends = {"formula": FORMULA, **NUMBERS}, BELTS[coupling]
     options = {"blocks": 2, "coupling": coupling, "pulling": 1.0, "pulling_damping": 0.1}
-    orbit = synchronized_orbit(Model(Chain(**options), law_of(law), v=ends[0]))
+    orbit = synchronized_orbit(Model(law, **options, v=ends[0]))
     (end,) = [item for item in locate_bifurcations(follow(orbit, ends, parameter="v")) if item.loses_stability]
     assert end.kind == BifurcationKind.PERIOD_DOUBLING
     low = end.value - distance
     near = synchronized_orbit(orbit.model.at(v=low))
-    data = continue_attractors(
-        law, 0, v=[low, low + refine], samples=2, fraction_width=0.5, refine=refine, cores=1, **options,
-        starts=[(near.reference.position + near.model.sliding_offset + [1e-4, 0.0], near.reference.velocity)],
-    )  # fmt: skip
+    start = (near.reference.position + near.model.sliding_offset + [1e-4, 0.0], near.reference.velocity)
+    search = {"samples": 2, "fraction_width": 0.5, "refine": refine, "cores": 1, "starts": [start]}
+    data = continue_attractors(orbit.model, v=[low, low + refine], **search)
     inside(data, MotionKind.SYNCHRONIZED, end.value)
     assert MotionKind.SYNCHRONIZED in data["kind"].values[0]
 
@@ -241,4 +244,4 @@ def test_the_share_that_is_done_is_shown(capsys, monkeypatch):
 )
 def test_wrong_arguments_are_refused(options, place):
     with refused(place):
-        continue_attractors("linearized", **options)
+        continue_attractors(Model("linearized"), **options)

@@ -1,7 +1,8 @@
-"""One grammar for all public functions: a model or a law and a, a state in any form, parameters by name."""
+"""One grammar for all public functions: a model, then states in any form or values that vary, then settings by name."""
 
 import inspect
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,7 +18,6 @@ from burridge_knopoff import (
     MotionKind,
     MotionSettings,
     basin_map,
-    block_frequencies,
     continue_attractors,
     edge_state,
     find_attractors,
@@ -27,69 +27,66 @@ from burridge_knopoff import (
     record_events,
     simulate,
     sweep,
-    synchronized_orbit,
 )
+from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import ChainState
 from tests.library.test_wrong_types import CALLS
 from tests.refused import refused
 
 ROUGH = {"random": "uniform", "low": -1.0, "high": -0.9, "seed": 1}
 SHORT = {"transient": 0.0, "window": 30.0, "batches": 2}
-#: Functions of one model, by the name of the argument that is a model or a law.
+#: Functions of a model.
 OF_MODEL = {
-    name: key
+    name
     for name in burridge_knopoff.__all__
     if inspect.isfunction(function := getattr(burridge_knopoff, name))
-    for key in ("model", "law")
-    if key in inspect.signature(function).parameters
+    and "model" in inspect.signature(function).parameters
 }
-MODEL = Model(Chain(3, coupling=1.3), law_of("stribeck", 0.1, {"sigma": 0.1}), v=0.12, contact="symmetric")
-#: The same model, said in other ways: law, a, and arguments by name.
-WAYS = {
-    "law and a": ("stribeck", 0.1, {"chain": Chain(3, coupling=1.3), "sigma": 0.1}),
-    "law with its own a": (MODEL.law, None, {"chain": Chain(3), "coupling": 1.3}),
-    "law at another a": (MODEL.law.at(0.3), 0.1, {"blocks": 3, "coupling": 1.3}),
-    "as in a config": ({"law": "stribeck", "sigma": 0.3}, 0.1, {"coupling": 1.3, "sigma": 0.1}),
-    "formula": (MODEL.law, 0.1, {"coupling": 1.0, "coupling[1]": 1.3, "coupling[2]": 1.3, "eta": 0.2}),
-}
-
-
-def test_the_functions_of_a_model_are_known():
-    assert len(OF_MODEL) >= 15
-    assert {"simulate", "sweep", "limit_cycle", "label_states", "record_events", "edge_state"} <= OF_MODEL.keys()
-
-
-@pytest.mark.parametrize("way", WAYS)
-def test_a_model_is_the_same_in_every_way(way):
-    law, a, options = WAYS[way]
-    run = simulate(law, a, "plus", v=0.12, contact="symmetric", **options, **SHORT)
-    assert run.model.chain.different_key(MODEL.chain) is None
-    assert (run.model.law.formula, run.model.law.parameters) == (MODEL.law.formula, MODEL.law.parameters)
-    assert (run.model.a, run.model.v, run.model.contact) == (0.1, 0.12, "symmetric")
-    assert np.array_equal(run.velocity, simulate(MODEL, initial="plus", **SHORT).velocity)
-
-
+MODEL = Model("stribeck", a=0.1, sigma=0.1, coupling=1.3, v=0.12, contact="symmetric")
+BOTH = [Model("stribeck"), Model("linearized")]
 SLOW = [pytest.param(name, marks=pytest.mark.slow) for name in ("basin_map", "edge_state")]
 
 
-@pytest.mark.parametrize("name", [*sorted(OF_MODEL.keys() - {"basin_map", "edge_state"}), *SLOW])
-def test_every_function_of_a_model_takes_a_law_and_a(name):
+def test_the_functions_of_a_model_take_it_first():
+    """But for `follow`, which takes an orbit in its place. None takes a number of the model."""
+    assert len(OF_MODEL) >= 15
+    for name in OF_MODEL:
+        names = [*inspect.signature(getattr(burridge_knopoff, name)).parameters]
+        assert names[0] == "model"
+        assert not {"a", "v", "contact", "chain", "law", *fields_of(Chain)} & {*names}
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        Model(MODEL.law, chain=Chain(3, coupling=1.3), v=0.12, contact="symmetric"),
+        Model(MODEL.law.at(a=0.3), a=0.1, coupling=1.3, v=0.12, contact="symmetric"),
+        Model({"law": "stribeck", "a": 0.1}, sigma=0.1, coupling=(1.3, 1.3), v=0.12, contact="symmetric"),
+        Model({"stribeck": {"sigma": 0.1}}, a=0.1, **{"coupling[1]": 1.3, "coupling[2]": 1.3}).at(v=0.12),
+        Model("stribeck", sigma=0.1, coupling=1.3, v=0.12, contact="symmetric").at(a=0.1),
+    ],
+)
+def test_a_model_is_the_same_in_every_way(model):
+    model = replace(model, contact="symmetric")
+    assert model.law == MODEL.law
+    MODEL.check_same(model, "model")
+    run = simulate(model, "plus", **SHORT)
+    assert np.array_equal(run.velocity, simulate(MODEL, "plus", **SHORT).velocity)
+
+
+@pytest.mark.parametrize("name", [*sorted(OF_MODEL - {"basin_map", "edge_state"}), *SLOW])
+def test_what_is_left_open_is_missing(name):
+    """But for the functions that supply it: `sweep`, `continue_attractors` and others."""
     arguments = dict(CALLS[name])
-    given = arguments.pop(OF_MODEL[name])
-    base = given if isinstance(given, Model) else Model(Chain(3), law_of(given, 0.08))
-    # A list of a stays.
-    grid = {"a": values} if isinstance(values := arguments.get("a"), list) else {}
-    arguments = {key: value for key, value in arguments.items() if key not in ("a", "chain", "v")} | grid
-    function = getattr(burridge_knopoff, name)
-    others = {"chain": base.chain, "v": base.v, "contact": base.contact}
-    results = [
-        function(base, **arguments),
-        function(model=base, **arguments),
-        function(base.law.name, **{"a": base.a, **others, **arguments}),
-        function(base.law, **others, **arguments),
-    ]
-    for result in results[1:]:
-        assert said(result) == said(results[0])
+    model = arguments.pop("model")
+    for left in (
+        Model("stribeck", chain=model.chain),
+        Model({"formula": "1 - a*u + b*u**2"}, b=0.1, chain=model.chain),
+    ):
+        if "a" in arguments:
+            arguments.pop("a")
+        with refused("a: missing"):
+            getattr(burridge_knopoff, name)(left, **arguments)
 
 
 def said(result):
@@ -138,7 +135,7 @@ def test_an_initial_state_begins_as_in_a_model(name):
 
 
 def test_runs_where_initial_states_are_taken():
-    run = simulate("linearized", 0.08, "plus", transient=0, window=200)
+    run = simulate(Model("linearized", a=0.08), "plus", transient=0, window=200)
     options = {"samples": 12, "transient": 500, "window": 500}
     attractors, labels = find_attractors(run.model, starts=["plus", run, run.final], **options)
     assert (labels[-3:] == labels[-3]).all()
@@ -155,7 +152,7 @@ def test_runs_where_initial_states_are_taken():
 @pytest.mark.parametrize(("change", "key"), [({"a": 0.2}, "a"), ({"v": 0.2}, "v"), ({"mass": 2.0}, "chain.mass")])
 def test_a_run_of_another_model_keeps_its_positions_relative_to_the_driver(change, key):
     """Where U − vτ is the same, the spring forces are: under the new model, blocks begin with the old accelerations."""
-    run = simulate("nonlinear", 0.1, "plus", **SHORT)
+    run = simulate(Model("nonlinear", a=0.1), "plus", **SHORT)
     other = run.model.at(**change)
     with pytest.warns(UserWarning, match=rf"^initial\.{key}: got .*positions relative to the driver"):
         later = simulate(other, run, **SHORT, trajectory=30.0)
@@ -167,16 +164,16 @@ def test_a_run_of_another_model_keeps_its_positions_relative_to_the_driver(chang
     assert np.array_equal(later.velocity, kept.velocity)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        same = simulate(run.model.at(0.1), run, **SHORT)
+        same = simulate(run.model.at(a=0.1), run, **SHORT)
     assert np.array_equal(same.velocity, simulate(run.model, run.final, **SHORT).velocity)
     with refused("initial"):
-        simulate(Model(Chain(4), run.model.law), run, **SHORT)
+        simulate(Model(run.model.law, blocks=4), run, **SHORT)
 
 
 def test_a_stuck_block_starts_if_its_force_is_above_its_new_threshold():
-    run = simulate("linearized", 0.1, "plus", transient=0, window=40)
+    run = simulate(Model("linearized", a=0.1), "plus", transient=0, window=40)
     begins = np.flatnonzero(run.event_kind == 1)[-1]
-    stuck = simulate("linearized", 0.1, "plus", transient=0, window=float(run.event_time[begins]) - 0.01)
+    stuck = simulate(Model("linearized", a=0.1), "plus", transient=0, window=float(run.event_time[begins]) - 0.01)
     block = int(run.event_block[begins]) - 1
     assert stuck.final.stuck[block]
     with pytest.warns(UserWarning, match="stuck blocks"):
@@ -185,41 +182,37 @@ def test_a_stuck_block_starts_if_its_force_is_above_its_new_threshold():
     assert (weaker.event_kind[first], weaker.event_time[first]) == (1, pytest.approx(stuck.end_time, abs=1e-9))
 
 
-def test_the_name_of_a_setting_is_no_parameter_of_a_law():
+@pytest.mark.parametrize("name", ["v", "mass", "grid", "contact", "window", "chain", "initial"])
+def test_the_name_of_a_part_of_the_model_or_of_a_setting_is_no_parameter_of_a_law(name):
     """Either could be meant."""
-    law = {"formula": "1 - window*a*u", "window": 0.5}
-    own = FormulaLaw(0.1, "1 - samples*a*u", samples=0.5)
-    assert simulate(law, 0.1, transient=0.0, batches=2).settings.window == 7000.0
-    with refused("window"):
-        simulate(law, 0.1, **SHORT)
-    with refused("window"):
-        sweep(["linearized", law], 0.1, **SHORT)
-    with refused("window"):
-        limit_cycle(law, 0.1, "plus", window=100.0)
-    with refused("samples"):
-        find_attractors(own, samples=3)
-    with refused("samples"):
-        basin_map(Model(Chain(3), own), samples=3)
+    for law in (FormulaLaw(f"1 - {name}*a*u", a=0.1), {"formula": f"1 - {name}*a*u", "a": 0.1, name: 0.5}):
+        with refused(name, "another name"):
+            Model(law)
 
 
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: simulate("stribeck", 0.1, sigm=0.05), ("sigm", "did you mean sigma")),
-        (lambda: simulate("linearized", 0.1, sigma=0.05), ("sigma", "not a setting or a parameter")),
-        (lambda: simulate(law_of("linearized", 0.1), sigma=0.05), ("sigma", "not a setting or a parameter")),
-        (lambda: simulate("linearized", 0.1, blocks=4, chain=Chain(4)), ("blocks", "together with a chain")),
-        (lambda: simulate("linearized", 0.1, {"position": -0.9, "velocity": 0.1}, blocks=0), ("chain.blocks: 0",)),
-        (lambda: simulate("linearized", 0.1, InitialState("rough", ROUGH, 0.0)), ("blocks", "missing")),
+        (lambda: Model("stribeck", a=0.1, sigm=0.05), ("sigm", "did you mean sigma")),
+        (lambda: Model("linearized", a=0.1, sigma=0.05), ("sigma", "not a parameter of this model")),
+        (lambda: Model({"law": "stribeck", "a": 0.2}, a=0.1), ("a", "two values")),
+        (lambda: Model("linearized", a=0.1, blocks=4, chain=Chain(4)), ("blocks", "beside a chain")),
+        (lambda: Model("linearized", a=0.1, chain=Chain(4), **{"mass[1]": 2.0}), ("mass[1]", "beside a chain")),
+        (lambda: Model(Chain(3), MODEL.law), ("Model", 'Model("linearized", a=0.08')),
+        (lambda: Model("linearized", 0.1), ("Model", 'Model("linearized", a=0.08')),
+        (lambda: Model("linearized", a=0.1, blocks=0), ("chain.blocks: 0",)),
+        (lambda: MODEL.at(0.1), ("at: 0.1", "a=0.08")),
+        (lambda: simulate("linearized", 0.08, "plus"), ("model: 'linearized'", 'Model("linearized", a=0.08)')),
+        (lambda: sweep("linearized", [0.1, 0.2]), ("model: 'linearized'", 'Model("linearized", a=0.08)')),
+        (lambda: simulate(MODEL, "plus", windw=5.0), ("windw", "did you mean window")),
+        (lambda: sweep(MODEL, "plus", windw=5.0), ("windw", "did you mean window")),
         (lambda: record_events(MODEL, start=MODEL.begin(InitialState("own", -0.9, 0.1)), end=9.0), ("start", "state")),
-        (lambda: limit_cycle("linearized", 0.1, "pluss"), ("state: 'pluss'", "did you mean plus")),
-        (lambda: find_attractors("linearized", 0.1, starts=["plus", "other"]), ("starts[1]: 'other'",)),
-        (lambda: synchronized_orbit("linearized"), ("a", "without a Model or a Law")),
-        (lambda: limit_cycle(simulate(MODEL, initial="plus", **SHORT)), ("law", "formula")),
-        (lambda: simulate("linearized", 0.1, mass=[1.0, 1.0, 1.2]), ("mass", "chain=Chain(…, mass=…)")),
-        (lambda: simulate("linearized", 0.1, ends="ring"), ("ends: 'ring'", "chain=Chain(…, ends=…)")),
-        (lambda: edge_state("linearized", 0.1, "minus", "plus", [], duration=-1.0), ("duration: -1.0",)),
-        (lambda: sweep(["stribeck", "linearized"], 0.1, sigma=[0.1, 0.2]), ("law = 'linearized': sigma",)),
+        (lambda: limit_cycle(MODEL, "pluss"), ("state: 'pluss'", "did you mean plus")),
+        (lambda: find_attractors(MODEL, starts=["plus", "other"]), ("starts[1]: 'other'",)),
+        (lambda: edge_state(MODEL, "minus", "plus", [], duration=-1.0), ("duration: -1.0",)),
+        (lambda: sweep(BOTH, a=0.1, sigma=[0.1, 0.2]), ("law = 'linearized': sigma",)),
+        (lambda: sweep([Model("stribeck"), Model("linearized", v=0.2)], a=0.1), ("model[1].v: 0.2",)),
+        (lambda: sweep(BOTH, a=0.1, c=1.0), ("c",)),
     ],
 )  # fmt: skip
 def test_what_does_not_fit_is_refused_in_one_line(call, words):
@@ -232,79 +225,85 @@ def test_no_parameter_takes_the_place_of_a_result():
     for name in ("period", "mean_distance", "status", "block", "batch", "law"):
         law = {"formula": f"1 - {name}*a*u", name: 0.5}
         if name != "law":
-            assert sweep(law, [0.1, 0.2], **SHORT).mean_distance.dims == ("a",)
+            assert sweep(Model(law), a=[0.1, 0.2], **SHORT).mean_distance.dims == ("a",)
             with refused(name, "the name of a variable of the result"):
-                sweep(law, 0.1, **{name: [0.5, 1.0]}, **SHORT)
+                sweep(Model(law), a=0.1, **{name: [0.5, 1.0]}, **SHORT)
     for name in ("kind", "branch", "number", "side", "attractor", "change"):
         with refused(name, "the name of a variable of the result"):
-            continue_attractors({"formula": f"1 - {name}*a*u", name: 0.5}, 0.1, **{name: [0.5, 1.0]})
+            continue_attractors(Model({"formula": f"1 - {name}*a*u", name: 0.5}), a=0.1, **{name: [0.5, 1.0]})
 
 
 def test_runs_that_begin_at_different_times():
     """The times of their batches differ: they are in no coordinate."""
-    run = simulate("linearized", 0.08, "plus", transient=0.0, window=40.0)
-    runs = sweep("linearized", 0.08, [run, "minus", run.final], **SHORT)
+    run = simulate(Model("linearized", a=0.08), "plus", transient=0.0, window=40.0)
+    runs = sweep(Model("linearized"), [run, "minus", run.final], a=0.08, **SHORT)
     assert runs.initial.values.tolist() == ["continued", "minus", "continued_2"]
     assert runs.end_time.values.tolist() == [70.0, 30.0, 70.0]
     assert "batch" not in runs.variables
     assert runs.mean_distance.values[0] == runs.mean_distance.values[2]
-    alone = sweep("linearized", 0.08, run, **SHORT)
+    alone = sweep(Model("linearized"), run, a=0.08, **SHORT)
     assert alone.batch.values.tolist() == [47.5, 62.5]
     assert np.array_equal(runs.batch_mean_distance[0], alone.batch_mean_distance)
 
 
-def test_a_may_be_named_where_a_state_follows_the_law():
-    expected = block_frequencies("linearized", 0.08, "plus", duration=200.0)
-    assert said(block_frequencies("linearized", "plus", a=0.08, duration=200.0)) == said(expected)
-    attractors = CALLS["edge_state"]["attractors"]
-    position, velocity = [[-0.9, -1.0, -1.0]], [[0.1, 0.1, 0.1]]
-    by_name = label_states("linearized", attractors, position, velocity, a=0.08)
-    assert said(by_name) == said(label_states("linearized", 0.08, attractors, position, velocity))
+def test_a_parameter_with_one_value_goes_to_the_laws_that_have_it():
+    models = [Model({"constant": {"formula": "1/(1 + u/10)"}}), Model("stribeck"), Model("linearized")]
+    runs = sweep(models, a=0.1, sigma=0.02, **SHORT)
+    assert runs.mean_distance.dims == ("law",)
+    for model, numbers in zip(models, ({}, {"a": 0.1, "sigma": 0.02}, {"a": 0.1}), strict=True):
+        run = simulate(model.at(**numbers), **SHORT)
+        assert runs.mean_distance.sel(law=model.law.name).item() == run.mean_distance
 
 
-def test_plain_rows_by_their_number_of_blocks():
-    run = simulate("linearized", 0.1, {"position": -0.9, "velocity": 0.1}, blocks=5, **SHORT)
-    assert run.model.chain == Chain(5)
-    assert simulate("linearized", 0.1, blocks=3, **SHORT).model.chain == Chain(3)
+def test_named_states_as_in_a_config():
+    states = {"one": {"position": [-0.9, -1.1, -0.95], "velocity": 0.1}, "other": {"position": -0.9, "velocity": 0.1}}
+    runs = sweep(MODEL, states, **SHORT)
+    assert runs.initial.values.tolist() == ["one", "other"]
+    for name, numbers in states.items():
+        run = simulate(MODEL, {"name": name, **numbers}, **SHORT)
+        assert runs.mean_distance.sel(initial=name).item() == run.mean_distance
 
 
 def test_a_sweep_over_laws_and_states():
     own = InitialState("mine", (-0.9, -1.1, -0.95), (0.1, 0.1, 0.1))
-    laws = ["linearized", {"law": "stribeck", "sigma": 0.1}, FormulaLaw(0.5, "1 - a*u + b*a*u**2", b=0.1, name="bent")]
-    runs = sweep(laws, [0.05, 0.3], ["minus", own, "plus"], v=[0.1, 0.08], cores=2, **SHORT)
+    laws = [
+        "linearized",
+        {"law": "stribeck", "sigma": 0.1},
+        FormulaLaw("1 - a*u + b*a*u**2", name="bent", a=0.5, b=0.1),
+    ]
+    runs = sweep([Model(law) for law in laws], ["minus", own, "plus"], a=[0.05, 0.3], v=[0.1, 0.08], cores=2, **SHORT)
     assert runs.mean_distance.dims == ("law", "initial", "a", "v")
     assert runs.law.values.tolist() == ["linearized", "stribeck", "bent"]
     assert runs.initial.values.tolist() == ["minus", "mine", "plus"]
     for law, name in zip(laws, runs.law.values, strict=True):
         for state in ("minus", own, "plus"):
             for a, v in ((0.05, 0.08), (0.3, 0.1)):
-                run = simulate(law, a, state, v=v, **SHORT)
+                run = simulate(Model(law, a=a, v=v), state, **SHORT)
                 point = runs.sel(law=name, initial=getattr(state, "name", state), a=a, v=v)
                 assert point.mean_distance.item() == run.mean_distance
                 assert np.array_equal(point.lyapunov_exponent, run.lyapunov_exponent, equal_nan=True)
                 assert (point.kind.item(), point.period.item()) == pytest.approx((run.kind, run.period), nan_ok=True)
-    alone = sweep("linearized", [0.05, 0.3], "plus", **SHORT)
+    alone = sweep(Model("linearized"), "plus", a=[0.05, 0.3], **SHORT)
     assert (alone.law.item(), alone.initial.item(), alone.mean_distance.dims) == ("linearized", "plus", ("a",))
-    assert sweep(["linearized"], 0.1, ["plus"], **SHORT).mean_distance.dims == ("law", "initial")
-    assert sweep("linearized", 0.1, ([-0.9, -1.0], [0.1, 0.1]), **SHORT).mean_distance.dims == ()
+    assert sweep([Model("linearized")], ["plus"], a=0.1, **SHORT).mean_distance.dims == ("law", "initial")
+    assert sweep(Model("linearized", blocks=2), ([-0.9, -1.0], [0.1, 0.1]), a=0.1, **SHORT).mean_distance.dims == ()
 
 
 @pytest.mark.parametrize(
-    ("laws", "states", "words"),
+    ("models", "states", "words"),
     [
-        ("linearized", [([-1.0] * 3, [0.1] * 3)] * 2, ("initial[0]", "a state with a name")),
-        ("linearized", [[[-1.0] * 3, [0.1] * 3], [[-1.0] * 3, [0.1] * 3]], ("initial[0]", "a state with a name")),
-        ("linearized", ["plus", ([-1.0] * 3, [0.1] * 3)], ("initial[1]", "a state with a name")),
-        ("linearized", ["plus", "plus"], ("initial[1]", "twice")),
-        ("linearized", [], ("initial", "no state")),
-        (["linearized", "linearized"], "plus", ("law: 'linearized' twice",)),
-        ([], "plus", ("law",)),
+        (MODEL, [([-1.0] * 3, [0.1] * 3)] * 2, ("initial[0]", "a state with a name")),
+        (MODEL, [[[-1.0] * 3, [0.1] * 3], [[-1.0] * 3, [0.1] * 3]], ("initial[0]", "a state with a name")),
+        (MODEL, ["plus", ([-1.0] * 3, [0.1] * 3)], ("initial[1]", "a state with a name")),
+        (MODEL, ["plus", "plus"], ("initial[1]", "twice")),
+        (MODEL, [], ("initial", "no state")),
+        ([MODEL, MODEL], "plus", ("law: 'stribeck' twice",)),
+        ([], "plus", ("model",)),
     ],
 )
-def test_lists_that_are_refused(laws, states, words):
-    options = {"sigma": 0.1} if words[0] == "sigma" else {}
+def test_lists_that_are_refused(models, states, words):
     with refused(*words):
-        sweep(laws, [0.1, 0.2], states, **options, **SHORT)
+        sweep(models, states, a=[0.1, 0.2], **SHORT)
 
 
 KINDS = {
@@ -319,22 +318,28 @@ KINDS = {
 def test_the_kind_of_motion_and_its_period(law, a, initial):
     """Where the motion is periodic, its period is that of the orbit that Newton's method finds."""
     kind, error = KINDS[law, a, initial]
-    run = simulate(law, a, initial)
+    run = simulate(Model(law, a=a), initial)
     assert run.kind == kind
     if np.isfinite(error):
         assert run.period == pytest.approx(limit_cycle(run.model, run).period, rel=1e-6)
-    runs = sweep(law, [a], initial)
+    runs = sweep(Model(law), initial, a=[a])
     assert (runs.kind.item(), runs.kind.attrs["flag_meanings"].split()[kind + 1]) == (kind, kind.name.lower())
     assert runs.period.item() == pytest.approx(run.period, nan_ok=True)
-    assert not {"kind", "period"} & {*sweep(law, [a], initial, motion=None, **SHORT).variables}
+    assert not {"kind", "period"} & {*sweep(Model(law), initial, a=[a], motion=None, **SHORT).variables}
     if kind == MotionKind.PERIODIC:
         shorter = MotionSettings(longest_period=100.0)
-        assert run.motion(shorter).kind == sweep(law, [a], initial, motion=shorter).kind == MotionKind.QUASIPERIODIC
+        assert (
+            run.motion(shorter).kind
+            == sweep(Model(law), initial, a=[a], motion=shorter).kind
+            == MotionKind.QUASIPERIODIC
+        )
 
 
 def test_a_law_is_a_subclass_of_law():
-    assert isinstance(law_of("stribeck", 0.1, sigma=0.05), Law)
-    assert law_of("stribeck", 0.1, sigma=0.05).parameters["sigma"] == 0.05
-    assert law_of("mine", 0.1, formula="1 - b*a*u", b=0.5) == law_of("mine", 0.1, {"formula": "1 - b*a*u", "b": 0.5})
+    assert isinstance(law_of("stribeck", a=0.1, sigma=0.05), Law)
+    assert law_of("stribeck", a=0.1, sigma=0.05).parameters["sigma"] == 0.05
+    assert law_of({"mine": {"formula": "1 - b*a*u"}}, a=0.1, b=0.5) == law_of(
+        {"mine": {"formula": "1 - b*a*u", "b": 0.5}}, a=0.1
+    )
     with refused("sigma"):
-        law_of("stribeck", 0.1, {"sigma": 0.05}, sigma=0.06)
+        law_of({"law": "stribeck", "sigma": 0.06}, a=0.1, sigma=0.05)

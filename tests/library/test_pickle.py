@@ -24,8 +24,8 @@ from tests.refused import refused
 
 COPIES = {"pickle": lambda value: pickle.loads(pickle.dumps(value)), "deepcopy": copy.deepcopy}
 ROUGH = InitialState("rough", {"random": "uniform", "low": -1.0, "high": -0.9, "seed": 1}, 0.0)
-PAPER = Model(Chain(3), law_of("linearized", 0.1))
-TRAIN = Model(Chain(30, coupling=9, pulling=1), law_of("carlson_langer", 3.0), v=0.01)
+PAPER = Model("linearized", a=0.1)
+TRAIN = Model("carlson_langer", a=3.0, blocks=30, coupling=9, pulling=1, v=0.01)
 
 
 def equal(one, other):
@@ -52,8 +52,8 @@ RESULTS = {
         4, coupling=(1.0, 2.0, 0.5), threshold={"random": "uniform", "low": 1, "high": 2, "seed": 3}
     ),
     "grid": lambda: Chain(grid=(3, 2)),
-    "law": lambda: law_of("stribeck", 0.3),
-    "formula": lambda: FormulaLaw(0.04, "1/(1 + a*u)**p", name="power", p=2.0),
+    "law": lambda: law_of("stribeck", a=0.3),
+    "formula": lambda: FormulaLaw("1/(1 + a*u)**p", name="power", a=0.04, p=2.0),
     "model": lambda: TRAIN,
     "state": lambda: TRAIN.begin(ROUGH, "tested"),
     "run": run,
@@ -115,9 +115,10 @@ def test_a_catalogue_continues_from_a_copied_state(options, copied):
 
 def test_runs_in_other_processes():
     call = partial(simulate, window=20.0, transient=20.0, events="all")
+    models = [Model("linearized", a=0.08), Model("nonlinear", a=0.1)]
     with ProcessPoolExecutor(2) as pool:
-        runs = list(pool.map(call, ["linearized", "nonlinear"], [0.08, 0.1], ["plus", "minus"]))
-    assert equal(runs, [call("linearized", 0.08, "plus"), call("nonlinear", 0.1, "minus")])
+        runs = list(pool.map(call, models, ["plus", "minus"]))
+    assert equal(runs, [call(models[0], "plus"), call(models[1], "minus")])
     longer = [simulate(run.model, initial=run.final, transient=0.0, window=20.0) for run in runs]
     assert [run.status for run in longer] == ["completed"] * 2
 

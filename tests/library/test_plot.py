@@ -13,7 +13,6 @@ from matplotlib.lines import Line2D
 
 from burridge_knopoff import (
     BifurcationKind,
-    Chain,
     InitialState,
     Model,
     MotionKind,
@@ -22,7 +21,6 @@ from burridge_knopoff import (
     find_attractors,
     follow,
     follow_bifurcation,
-    law_of,
     limit_cycle,
     locate_bifurcations,
     plot,
@@ -36,12 +34,12 @@ from tests.figures.test_parameter_panels import summary
 from tests.refused import refused
 
 QUICK = {"transient": 500.0, "window": 500.0}
-MODEL = Model(Chain(3), law_of("linearized", 0.12))
+MODEL = Model("linearized", a=0.12)
 
 
 @pytest.fixture(scope="module")
 def run():
-    return simulate("linearized", 0.08, "plus", batches=2, **QUICK)
+    return simulate(Model("linearized", a=0.08), "plus", batches=2, **QUICK)
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +50,7 @@ def orbit():
 @pytest.fixture(scope="module")
 def branch():
     """Return orbits on both sides of a_c, and the pitchfork there."""
-    points = follow(synchronized_orbit(MODEL.at(0.0865)), (0.086, 0.0875))
+    points = follow(synchronized_orbit(MODEL.at(a=0.0865)), (0.086, 0.0875), parameter="a")
     return points, list(locate_bifurcations(points))
 
 
@@ -63,7 +61,7 @@ def attractors():
 
 @pytest.fixture(scope="module")
 def maps():
-    return basin_map("linearized", 0.08, pixels=8, samples=24, **QUICK)
+    return basin_map(Model("linearized", a=0.08), pixels=8, samples=24, **QUICK)
 
 
 def lines(panel):
@@ -90,7 +88,7 @@ def test_a_point_has_its_section(run):
 
 
 def test_a_catalogue():
-    model = Model(Chain(3, pulling=1), law_of("linearized", 0.1), v=0.01)
+    model = Model("linearized", a=0.1, pulling=1, v=0.01)
     events = record_events(model, model.begin(InitialState("own", (-0.9, -0.8, -1.0), 0.0), "tested"), 500.0)
     figures = plot(events), events.plot()
     drawn, expected = ([line for panel in figure.axes for line in lines(panel)] for figure in figures)
@@ -100,7 +98,7 @@ def test_a_catalogue():
 
 def test_a_sweep_over_one_parameter():
     """Whatever the order of the values, one curve from left to right, with three standard errors."""
-    runs = sweep("linearized", [0.2, 0.05, 0.1], "plus", batches=2, **QUICK)
+    runs = sweep(Model("linearized"), "plus", a=[0.2, 0.05, 0.1], batches=2, **QUICK)
     figure = plot(runs)
     (panel,) = figure.axes
     in_order = runs.sortby("a")
@@ -152,7 +150,7 @@ def test_a_legend_has_at_most_eight_entries():
 
 @pytest.mark.parametrize("axes", [None, Figure().subplots()])
 def test_a_sweep_over_two_parameters(axes):
-    runs = sweep("linearized", [0.1, 0.2], "plus", v=[0.1, 0.3, 0.2], batches=2, **QUICK)
+    runs = sweep(Model("linearized"), "plus", a=[0.1, 0.2], v=[0.1, 0.3, 0.2], batches=2, **QUICK)
     figure = plot(runs, axes)
     panel = figure.axes[0]
     assert np.array_equal(panel.collections[0].get_array(), runs.mean_distance.sortby("v").transpose("v", "a"))
@@ -227,7 +225,7 @@ def test_attractors_of_a_model(attractors):
 
 def test_a_single_point_has_axes_wider_than_rounding(attractors):
     """The returns to the synchronized orbit differ by 1e-13."""
-    (synchronized, *_), _ = find_attractors("linearized", 0.08, samples=8, **QUICK)
+    (synchronized, *_), _ = find_attractors(Model("linearized", a=0.08), samples=8, **QUICK)
     assert synchronized.motion.kind == MotionKind.SYNCHRONIZED
     assert np.ptp(synchronized.motion.returns[:, 0]) < 1e-9
     figure = plot([synchronized])
@@ -304,7 +302,7 @@ def test_a_branch_along_another_parameter(orbit):
 @pytest.mark.slow
 def test_a_closed_branch_is_drawn_once(orbit):
     """Dashes drawn twice would look like a line."""
-    points = follow(orbit, (0.08, 0.14))
+    points = follow(orbit, (0.08, 0.14), parameter="a")
     value = [point.value for point in points]
     drawn = np.hstack(lines(plot(points).axes[0]))
     assert np.count_nonzero(np.diff(np.sign(np.diff(value)))) == 2
@@ -312,7 +310,7 @@ def test_a_closed_branch_is_drawn_once(orbit):
 
 
 def test_stable_and_unstable_orbits_meet_at_a_fold():
-    points = follow("linearized", 0.15, initial="minus", interval=(0.145, 0.16))
+    points = follow(Model("linearized", a=0.15), initial="minus", interval=(0.145, 0.16), parameter="a")
     fold, *_ = bifurcations = list(locate_bifurcations(points))
     assert fold.kind == BifurcationKind.FOLD
     stable, unstable, *_ = lines(plot((points, bifurcations)).axes[0])

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import pytest
 
-from burridge_knopoff import sweep
+from burridge_knopoff import Model, sweep
 from burridge_knopoff.library import progress
 from burridge_knopoff.library.progress import progress_bar
 
@@ -88,7 +88,7 @@ def test_a_warning_says_that_no_bar_can_be_shown(without):
 
 def test_a_sweep_counts_its_runs(tqdm, without):
     without("rich", "rich.console", "rich.progress")
-    sweep("linearized", [0.05, 0.08, 0.1], transient=0, window=1, batches=2, cores=2, progress="always")
+    sweep(Model("linearized"), a=[0.05, 0.08, 0.1], transient=0, window=1, batches=2, cores=2, progress="always")
     (bar,) = tqdm.bars
     assert bar.total == bar.done == 3
 

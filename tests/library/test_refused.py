@@ -30,7 +30,7 @@ from burridge_knopoff.kernel._core import Ensemble
 from burridge_knopoff.running.ensemble import new_ensemble
 from tests.refused import refused
 
-MODEL = Model(Chain(3), law_of("linearized", 0.08))
+MODEL = Model("linearized", a=0.08)
 STATE = MODEL.begin(InitialState("own", (-0.9, -1.1, -0.9), (0.1, 0.1, 0.1)))
 POSITION, VELOCITY = np.full((4, 3), -1.0), np.full((4, 3), 0.1)
 
@@ -56,7 +56,7 @@ def attractors():
         ({"position": POSITION + 1j}, "position"),
         ({"position": [[1.0], [1.0, 2.0]]}, "position"),
         ({"position": np.ma.array(POSITION, mask=POSITION < 0.0)}, "velocity"),
-        ({"model": "linearized"}, "a"),
+        ({"model": "linearized"}, "model"),
         ({"attractors": ([], np.zeros(3))}, "attractors[0]: []"),
     ],
 )
@@ -69,7 +69,7 @@ def test_states_that_cannot_be_labelled(attractors, given, place):
 @pytest.mark.parametrize(
     ("call", "place"),
     [
-        (lambda: limit_cycle(Model(Chain(4), MODEL.law), STATE), "state"),
+        (lambda: limit_cycle(Model(MODEL.law, blocks=4), STATE), "state"),
         (lambda: limit_cycle(MODEL, ChainState(np.zeros(3), np.zeros(2), np.zeros(3, bool)), 10.0), "state"),
         (lambda: limit_cycle(MODEL, "pluss"), "state"),
         (lambda: limit_cycle(MODEL, STATE, float("nan")), "settling"),
@@ -79,21 +79,21 @@ def test_states_that_cannot_be_labelled(attractors, given, place):
         (lambda: find_periodic_orbit(MODEL, STATE, 10.0, "none"), "symmetry"),
         (lambda: transverse_exponent(MODEL, STATE, -5.0, 100.0), "alignment"),
         (lambda: transverse_exponent(MODEL, STATE, 5.0, -100.0), "window"),
-        (lambda: follow(None, (0.1, 0.05)), "interval"),
-        (lambda: follow(None, (float("nan"), 0.6)), "interval"),
-        (lambda: simulate("linearized", 0.08, np.zeros((3, 2))), "initial"),
+        (lambda: follow(None, (0.1, 0.05), parameter="a"), "interval"),
+        (lambda: follow(None, (float("nan"), 0.6), parameter="a"), "interval"),
+        (lambda: simulate(Model("linearized", a=0.08), np.zeros((3, 2))), "initial"),
         (
-            lambda: simulate("linearized", 0.08, np.ma.array([[-1, -1], [0.1, 0.1]], mask=[[0, 1], [0, 0]])),
+            lambda: simulate(Model("linearized", a=0.08), np.ma.array([[-1, -1], [0.1, 0.1]], mask=[[0, 1], [0, 0]])),
             "initial.position",
         ),
-        (lambda: simulate({"law": ["linearized"]}, 0.08), "law"),
-        (lambda: simulate({"formula": 1.0}, 0.08), "formula"),
-        (lambda: simulate("linearized", 0.08, settings={"window": 5}), "settings"),
-        (lambda: sweep("linearized", np.ma.array([0.05, 0.08], mask=[0, 1])), "a"),
-        (lambda: synchronized_orbit("linearized"), "a"),
-        (lambda: synchronized_orbit(Model(Chain(3, threshold=[1, 2, 3]), MODEL.law)), "chain"),
+        (lambda: simulate(Model({"law": ["linearized"]}, a=0.08)), "law"),
+        (lambda: simulate(Model({"formula": 1.0}, a=0.08)), "formula"),
+        (lambda: simulate(Model("linearized", a=0.08), settings={"window": 5}), "settings"),
+        (lambda: sweep(Model("linearized"), a=np.ma.array([0.05, 0.08], mask=[0, 1])), "a"),
+        (lambda: synchronized_orbit(Model("linearized")), "a: missing"),
+        (lambda: synchronized_orbit(Model(MODEL.law, threshold=[1, 2, 3])), "chain"),
         (lambda: multipliers(MODEL), "orbit"),
-        (lambda: find_attractors("linearized"), "a"),
+        (lambda: find_attractors(Model("linearized")), "a: missing"),
         (lambda: find_attractors(MODEL, {"samples": 3}), "settings"),
         (lambda: open_study(None), "results"),
         (lambda: Chain(3, coupling=xr.DataArray([0.08])), "chain.coupling"),
@@ -110,18 +110,12 @@ def test_the_kernel_refuses_arrays_of_wrong_shape():
         kernel.run(POSITION, VELOCITY[:1], np.zeros((4, 3), np.intc), [1.0])
 
 
-def test_a_law_has_the_a_that_it_was_given():
-    assert simulate(law_of("nonlinear", 0.3), transient=0, window=5).model.a == 0.3
-    assert simulate(law_of("nonlinear", 0.3), 0.1, transient=0, window=5).model.a == 0.1
-    assert simulate("nonlinear", transient=0, window=5).model.a == 0.08
-
-
 def test_a_law_as_in_a_config():
     for law, same in (
-        ({"formula": "1 - c*a*u", "c": 0.5}, FormulaLaw(0.1, "1 - c*a*u", c=0.5)),
-        ({"law": "stribeck", "eta": 0.02}, law_of("stribeck", 0.1, {"eta": 0.02})),
+        ({"formula": "1 - c*a*u", "c": 0.5}, FormulaLaw("1 - c*a*u", a=0.1, c=0.5)),
+        ({"law": "stribeck", "eta": 0.02}, law_of("stribeck", a=0.1, eta=0.02)),
     ):
-        assert simulate(law, 0.1, transient=0, window=5).model.law == same
+        assert simulate(Model(law, a=0.1), transient=0, window=5).model.law == same
 
 
 @pytest.mark.parametrize("missing", ["formula", "text"])
@@ -129,15 +123,15 @@ def test_an_incomplete_custom_law_is_refused(missing):
     words = {"formula": "1 - a*u", "text": "Φ = 1 − aU′"}
     kind = type("Own", (Law,), {key: value for key, value in words.items() if key != missing})
     with refused(f"test_refused.{missing}"):
-        kind(0.1)
+        kind(a=0.1)
     unused = type("Own", (Law,), {**words, "defaults": {"c": 0.5}})
     with refused("test_refused.c"):
-        unused(0.1)
+        unused(a=0.1)
 
 
 def test_a_run_ends_at_the_limit_of_its_law():
     """A block released far ahead of the others reaches the speed at which the root has no value."""
-    model = Model(Chain(3), FormulaLaw(0.0, "sqrt(1 - 0.05*u)"))
+    model = Model(FormulaLaw("sqrt(1 - 0.05*u)"))
     far = InitialState("far", (-100.0, -30.0, 20.0), (0.1, 0.1, 0.1))
     assert simulate(model, initial=far, transient=0, window=50).status == "diverged"
     at = model.begin(far)
@@ -148,10 +142,10 @@ def test_a_run_ends_at_the_limit_of_its_law():
 @pytest.mark.parametrize(
     "call",
     [
-        lambda: simulate("linearized", 0.1, "minus", **{"foo\nbar": 1}),
-        lambda: find_attractors("linearized", 0.1, **{"foo\nbar": 1}),
-        lambda: sweep("linearized", a=0.1, **{"foo\nbar": [1.0]}),
-        lambda: sweep("linearized", a=0.1, **{"foo\nbar": []}),
+        lambda: simulate(Model("linearized", a=0.1), "minus", **{"foo\nbar": 1}),
+        lambda: find_attractors(Model("linearized", a=0.1), **{"foo\nbar": 1}),
+        lambda: sweep(Model("linearized"), a=0.1, **{"foo\nbar": [1.0]}),
+        lambda: sweep(Model("linearized"), a=0.1, **{"foo\nbar": []}),
     ],
 )
 def test_names_of_settings_are_shown_in_a_line(call):
@@ -171,7 +165,7 @@ def test_names_of_folders_are_shown_in_a_line(tmp_path, content):
 
 def test_a_search_without_initial_states_is_refused():
     for call in (
-        lambda: find_attractors("linearized", 0.1, samples=0),
+        lambda: find_attractors(Model("linearized", a=0.1), samples=0),
         lambda: find_attractors(MODEL, SearchSettings(samples=0)),
     ):
         with refused("samples: 0"):

@@ -15,6 +15,7 @@ from burridge_knopoff import (
     Chain,
     ChainState,
     InitialState,
+    Model,
     SearchSettings,
     basin_map,
     continue_attractors,
@@ -44,7 +45,7 @@ ENDS = [0.0864, 0.0866]
 
 
 def initial_of(**options):
-    return simulate("linearized", 0.08, **options, **QUICK).initial
+    return simulate(Model("linearized", a=0.08), **options, **QUICK).initial
 
 
 def end_from(position, velocity):
@@ -65,8 +66,8 @@ NUMBERS = {
     "Chain.damping_force.velocity": (VELOCITY, lambda x: Chain(3, damping=0.1).damping_force(x, 0.1)),
     "Law.__call__.speed": (VELOCITY, MODEL.law),
     "Law.slope.speed": (VELOCITY, MODEL.law.slope),
-    "FormulaLaw.__call__.speed": (VELOCITY, burridge_knopoff.FormulaLaw(0.1, "1 - a*u")),
-    "FormulaLaw.slope.speed": (VELOCITY, burridge_knopoff.FormulaLaw(0.1, "1 - a*u").slope),
+    "FormulaLaw.__call__.speed": (VELOCITY, burridge_knopoff.FormulaLaw("1 - a*u", a=0.1)),
+    "FormulaLaw.slope.speed": (VELOCITY, burridge_knopoff.FormulaLaw("1 - a*u", a=0.1).slope),
     "InitialState.position": (POSITION, lambda x: InitialState("own", x, 0.1).position),
     "InitialState.velocity": (VELOCITY, lambda x: InitialState("own", -0.9, x).velocity),
     "ChainState.position": ([0.0, 0.1, 0.2], lambda x: end_from(x, VELOCITY)),
@@ -76,9 +77,9 @@ NUMBERS = {
     "simulate.initial": (STATES, lambda x: initial_of(initial=x).position),
     "simulate.initial[0]": (POSITION, lambda x: initial_of(initial=(x, VELOCITY)).position),
     "simulate.initial.velocity": (VELOCITY, lambda x: initial_of(initial={"position": -0.9, "velocity": x}).velocity),
-    "sweep.a": ([0.05, 0.08], lambda x: sweep("linearized", x, **QUICK).mean_distance),
-    "sweep.v": ([0.05, 0.08], lambda x: sweep("linearized", 0.08, v=x, **QUICK).mean_distance),
-    "sweep.initial": (STATES, lambda x: sweep("linearized", 0.08, x, **QUICK).mean_distance),
+    "sweep.a": ([0.05, 0.08], lambda x: sweep(Model("linearized"), a=x, **QUICK).mean_distance),
+    "sweep.v": ([0.05, 0.08], lambda x: sweep(Model("linearized"), a=0.08, v=x, **QUICK).mean_distance),
+    "sweep.initial": (STATES, lambda x: sweep(Model("linearized"), x, a=0.08, **QUICK).mean_distance),
     "BasinSettings.first_position": ([-1.0, 1.0], lambda x: BasinSettings(first_position=x).first_position),
     "BasinSettings.first_velocity": ([0.0, 1.0], lambda x: BasinSettings(first_velocity=x).first_velocity),
     "BasinSettings.last_position": ([-1.0, 1.0], lambda x: BasinSettings(last_position=x).last_position),
@@ -91,18 +92,25 @@ NUMBERS = {
     "Catalogue.rate.chosen": ([value > 1.0 for value in EVENT_VALUES], lambda x: EVENTS.rate(x)),
     "continue_attractors.a": (
         [0.08, 0.09],
-        lambda x: continue_attractors("linearized", x, **SEARCH, fraction_width=0.5, cores=1).mean_distance,
+        lambda x: continue_attractors(Model("linearized"), a=x, **SEARCH, fraction_width=0.5, cores=1).mean_distance,
     ),
     "follow.initial": (
         STATES,
-        lambda x: [p.value for p in follow("linearized", 0.08, [0.0799, 0.0801], initial=x)],
+        lambda x: [p.value for p in follow(Model("linearized", a=0.08), [0.0799, 0.0801], initial=x, parameter="a")],
     ),
-    "follow.interval": (ENDS, lambda x: [len(follow(CALLS["follow"]["orbit"], x))]),
-    "hopf_bifurcations.interval": (ENDS, lambda x: [len(hopf_bifurcations(MODEL, x))]),
+    "follow.interval": (ENDS, lambda x: [len(follow(CALLS["follow"]["orbit"], x, parameter="a"))]),
+    "hopf_bifurcations.interval": (ENDS, lambda x: [len(hopf_bifurcations(MODEL, x, parameter="a"))]),
 }
 #: {argument: a list of other things that it takes, and what comes of them}
 THINGS = {
-    "find_attractors.starts": (["minus", "plus"], lambda x: find_attractors("linearized", 0.08, starts=x, **SEARCH)[1]),
+    "find_attractors.starts": (
+        ["minus", "plus"],
+        lambda x: find_attractors(Model("linearized", a=0.08), starts=x, **SEARCH)[1],
+    ),
+    "sweep.model": (
+        [Model("linearized"), Model("nonlinear")],
+        lambda x: sweep(x, a=0.08, **QUICK).mean_distance,
+    ),
     "label_states.attractors": (
         CALLS["edge_state"]["attractors"],
         lambda x: label_states(CALLS["edge_state"]["model"], x, [POSITION], [VELOCITY])[0],
@@ -110,18 +118,20 @@ THINGS = {
     "continue_attractors.starts": (
         ["minus", "plus"],
         lambda x: (
-            continue_attractors("linearized", [0.08], starts=x, **SEARCH, fraction_width=0.5, cores=1).mean_distance
+            continue_attractors(
+                Model("linearized"), a=[0.08], starts=x, **SEARCH, fraction_width=0.5, cores=1
+            ).mean_distance
         ),
     ),
     "locate_bifurcations.branch": (CALLS["locate_bifurcations"]["branch"], lambda x: len([*locate_bifurcations(x)])),
 }
 #: Those that are slow, or need more of their value: only the refusal is tried.
 REFUSALS = {
-    "sweep.law": lambda x: sweep(x, 0.08, **QUICK),
-    "basin_map.initial": lambda x: basin_map("linearized", 0.08, x),
-    "basin_map.first_position": lambda x: basin_map("linearized", 0.08, first_position=x),
-    "basin_map.first_velocity": lambda x: basin_map("linearized", 0.08, first_velocity=x),
-    "basin_map.last_position": lambda x: basin_map("linearized", 0.08, last_position=x),
+    "sweep.law": lambda x: sweep(x, a=0.08, **QUICK),
+    "basin_map.initial": lambda x: basin_map(Model("linearized", a=0.08), x),
+    "basin_map.first_position": lambda x: basin_map(Model("linearized", a=0.08), first_position=x),
+    "basin_map.first_velocity": lambda x: basin_map(Model("linearized", a=0.08), first_velocity=x),
+    "basin_map.last_position": lambda x: basin_map(Model("linearized", a=0.08), last_position=x),
     "edge_state.attractors": lambda x: edge_state(**{**CALLS["edge_state"], "attractors": x}),
     "follow_bifurcation.interval": lambda x: follow_bifurcation(CALLS["follow_bifurcation"]["bifurcation"], interval=x),
     "follow_bifurcation.parameters": lambda x: follow_bifurcation(CALLS["follow_bifurcation"]["bifurcation"], x),

@@ -13,7 +13,6 @@ from burridge_knopoff import (
     Settings,
     basin_map,
     find_attractors,
-    law_of,
     simulate,
     sweep,
 )
@@ -22,7 +21,7 @@ from tests.refused import refused
 
 POSITION, VELOCITY = [-0.9, -1.0, -0.8], [0.1, 0.0, 0.2]
 SHORT = {"transient": 0.0, "window": 20.0}
-MODEL = Model(Chain(3), law_of("linearized", 0.08))
+MODEL = Model("linearized", a=0.08)
 
 
 @pytest.mark.parametrize(
@@ -36,14 +35,14 @@ MODEL = Model(Chain(3), law_of("linearized", 0.08))
     ],
 )
 def test_an_initial_state_in_plain_numbers(given):
-    run = simulate("nonlinear", 0.1, given, **SHORT)
-    expected = simulate("nonlinear", 0.1, InitialState("own", tuple(POSITION), tuple(VELOCITY)), **SHORT)
+    run = simulate(Model("nonlinear", a=0.1), given, **SHORT)
+    expected = simulate(Model("nonlinear", a=0.1), InitialState("own", tuple(POSITION), tuple(VELOCITY)), **SHORT)
     assert run.initial == expected.initial
     assert run.event_time.tolist() == expected.event_time.tolist()
 
 
 def test_an_initial_state_with_a_name():
-    run = simulate("nonlinear", 0.1, {"name": "mine", "position": POSITION, "velocity": VELOCITY}, **SHORT)
+    run = simulate(Model("nonlinear", a=0.1), {"name": "mine", "position": POSITION, "velocity": VELOCITY}, **SHORT)
     assert run.initial == InitialState("mine", tuple(POSITION), tuple(VELOCITY))
 
 
@@ -66,7 +65,7 @@ def test_an_initial_state_with_a_name():
 )
 def test_a_bad_initial_state_is_refused_in_one_line(given, words):
     with refused(words):
-        simulate("linearized", 0.08, given)
+        simulate(Model("linearized", a=0.08), given)
 
 
 def test_settings_may_be_given_in_both_ways():
@@ -75,8 +74,8 @@ def test_settings_may_be_given_in_both_ways():
         simulate(MODEL, initial="plus", settings=settings),
         simulate(MODEL, initial="plus", **SHORT, batches=3),
         simulate(MODEL, initial="plus", settings=Settings(**SHORT), batches=3),
-        simulate("linearized", 0.08, "plus", settings),
-        simulate("linearized", 0.08, "plus", **SHORT, batches=3),
+        simulate(Model("linearized", a=0.08), "plus", settings),
+        simulate(Model("linearized", a=0.08), "plus", batches=3, **SHORT),
     ]
     assert {run.settings for run in ways} == {settings}
     assert len({run.mean_distance for run in ways}) == 1
@@ -94,7 +93,7 @@ def test_what_a_model_already_has_is_refused(name, options):
 
 def test_other_objects_in_place_of_settings_are_refused():
     with refused("settings: 'plus'"):
-        simulate("linearized", 0.08, "minus", "plus")
+        simulate(Model("linearized", a=0.08), "minus", "plus")
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ import pytest
 from burridge_knopoff import (
     ContinuationSettings,
     InitialState,
+    Model,
     SearchSettings,
     basin_map,
     continue_attractors,
@@ -93,25 +94,24 @@ def test_the_map_of_one_block_is_over_its_position_and_velocity():
 
 
 def test_a_law_without_a_needs_none():
-    """In every form; a given a is not a parameter of the model."""
     law = {"formula": FORMULA, **NUMBERS}
-    run = simulate(law, STUCK, chain=CHAIN, v=1.4, contact="symmetric", transient=10, window=20)
+    run = simulate(Model(law, chain=CHAIN, v=1.4, contact="symmetric"), STUCK, transient=10, window=20)
     same = simulate(oscillator(1.4), STUCK, transient=10, window=20)
     np.testing.assert_array_equal(run.event_time, same.event_time)
     assert "--a " not in run.to_dataset().attrs["history"]
     assert "a = " not in repr(run)
     with refused("a"):
         oscillator(1.4).at(a=0.1)
-    with refused("a: None"):
-        find_attractors({"formula": "1 - a*u"}, samples=1)
-    with pytest.raises(ValueError, match="w: unknown name, expected u$"):
-        simulate({"formula": "1/(1 + w*u)"}, initial="minus")
+    with refused("a: missing"):
+        find_attractors(Model({"formula": "1 - a*u"}), samples=1)
+    with refused("w: missing"):
+        simulate(Model({"formula": "1/(1 + w*u)"}), initial="minus")
 
 
 def test_the_synchronized_orbit_of_a_law_without_a():
     """It is that of the same law at its a."""
-    orbit = synchronized_orbit({"formula": "1/(1 + 0.08*u)"})
-    assert orbit.period == pytest.approx(synchronized_orbit("nonlinear", 0.08).period, abs=1e-9)
+    orbit = synchronized_orbit(Model({"formula": "1/(1 + 0.08*u)"}))
+    assert orbit.period == pytest.approx(synchronized_orbit(Model("nonlinear", a=0.08)).period, abs=1e-9)
 
 
 def test_velocities_that_a_tested_start_drops_are_told():
@@ -119,12 +119,12 @@ def test_velocities_that_a_tested_start_drops_are_told():
     given = {"name": "given", "position": [-0.9, -1.1, -1.0], "velocity": [0.1, 0.1, 0.1]}
     short = {"start": "tested", "transient": 1, "window": 2, "lyapunov_exponents": 0}
     with pytest.warns(UserWarning, match="start tested: .* given 2 blocks stick") as told:
-        simulate("linearized", 0.08, given, **short)
+        simulate(Model("linearized", a=0.08), given, **short)
     assert told[0].filename == __file__
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        simulate("linearized", 0.08, "minus", **short)
-        simulate("linearized", 0.08, {**given, "velocity": [0.0, 0.1, 0.0]}, **short)
+        simulate(Model("linearized", a=0.08), "minus", **short)
+        simulate(Model("linearized", a=0.08), {**given, "velocity": [0.0, 0.1, 0.0]}, **short)
 
 
 def test_velocities_below_0_need_symmetric_contact():
@@ -134,9 +134,9 @@ def test_velocities_below_0_need_symmetric_contact():
     find_attractors(model, samples=2, velocity=(-0.5, 1.5), transient=50, window=50, time_limit=50)
     for wrong in ((-0.5, 1.5), ("v - 1", "v"), ("v", "0.5*v"), (0.0, "w"), ("1", "0"), "v"):
         with refused("velocity"):
-            find_attractors("linearized", 0.08, samples=2, velocity=wrong)
+            find_attractors(Model("linearized", a=0.08), samples=2, velocity=wrong)
         with refused("first_velocity"):
-            basin_map("linearized", 0.08, blocks=1, first_velocity=wrong)
+            basin_map(Model("linearized", a=0.08, blocks=1), first_velocity=wrong)
 
 
 def test_a_quoted_constant_is_its_number():
@@ -147,4 +147,6 @@ def test_a_quoted_constant_is_its_number():
 def test_a_range_that_is_not_that_of_an_axis_is_refused():
     for blocks, name in ((1, "last_position"), (3, "first_velocity")):
         with refused(f"{name}: (0.0, 0.5)", "in its place"):
-            basin_map("linearized", 0.08, initial=([0.0] * blocks, [0.1] * blocks), **{name: (0.0, 0.5)})
+            basin_map(
+                Model("linearized", a=0.08, blocks=blocks), ([0.0] * blocks, [0.1] * blocks), **{name: (0.0, 0.5)}
+            )

@@ -10,7 +10,6 @@ import xarray
 
 import burridge_knopoff
 from burridge_knopoff import (
-    Chain,
     ContinuationSettings,
     EdgeSettings,
     FormulaLaw,
@@ -24,7 +23,6 @@ from burridge_knopoff import (
     find_attractors,
     follow,
     hopf_bifurcations,
-    law_of,
     limit_cycle,
     locate_bifurcations,
     mode_amplitudes,
@@ -34,13 +32,13 @@ from burridge_knopoff import (
 )
 from tests.refused import refused
 
-MODEL = Model(Chain(3), law_of("linearized", 0.0865))
+MODEL = Model("linearized", a=0.0865)
 STATE = MODEL.begin(InitialState("own", (-0.9, -1.1, -0.9), (0.1, 0.1, 0.1)))
-DROPPING = Model(Chain(2), law_of("carlson_langer", 1.0))
-WEAKENING = Model(Chain(1), FormulaLaw(0.5, "1 - a*u + b*u**3", b=0.3), v=0.7)
+DROPPING = Model("carlson_langer", a=1.0, blocks=2)
+WEAKENING = Model(FormulaLaw("1 - a*u + b*u**3", a=0.5, b=0.3), blocks=1, v=0.7)
 REST = DROPPING.begin(InitialState("rest", (-0.5, -0.6), (0.0, 0.0)), "tested")
 QUICK = {"transient": 0, "window": 1, "batches": 2}
-EDGE_MODEL = Model(Chain(3), law_of("linearized", 0.08))
+EDGE_MODEL = Model("linearized", a=0.08)
 EDGE_ATTRACTORS = find_attractors(EDGE_MODEL, starts=["plus"], samples=12, transient=500, window=500)[0]
 SEARCH = SearchSettings(samples=1, fraction_width=0.49, transient=100, window=100, time_limit=200)
 WRONG = (
@@ -61,10 +59,10 @@ WRONG = (
 def correct_calls():
     """Return arguments that each public function takes, by its name."""
     orbit = limit_cycle(MODEL, synchronized_orbit(MODEL).reference)
-    branch = follow(orbit, (0.0864, 0.0871))
+    branch = follow(orbit, (0.0864, 0.0871), parameter="a")
     (bifurcation,) = locate_bifurcations(branch)
     return {
-        "basin_map": {"law": "linearized", "a": 0.08, "initial": "minus", "pixels": 1, "samples": 1},
+        "basin_map": {"model": EDGE_MODEL, "initial": "minus", "pixels": 1, "samples": 1},
         "limit_cycle": {"model": MODEL, "state": STATE, "settling": 1000.0},
         "edge_state": {
             "model": EDGE_MODEL,
@@ -76,10 +74,9 @@ def correct_calls():
         },
         "event_exponents": {"model": DROPPING, "state": REST, "end": 90.0, "begin": 10.0, "count": 1},
         "event_multipliers": {"model": DROPPING, "state": REST, "end": 10.3},
-        "find_attractors": {"law": "linearized", "a": 0.08, "settings": SEARCH, "starts": ["plus"]},
+        "find_attractors": {"model": EDGE_MODEL, "settings": SEARCH, "starts": ["plus"]},
         "continue_attractors": {
-            "law": "linearized",
-            "a": 0.08,
+            "model": EDGE_MODEL,
             "coupling": [1.0],
             "settings": SEARCH,
             "refine": 1.0,
@@ -103,7 +100,7 @@ def correct_calls():
         },
         "hopf_bifurcations": {"model": MODEL, "interval": (0.0, 0.2), "parameter": "pulling_damping"},
         "label_states": {"model": MODEL, "attractors": [], "position": np.ones((1, 3)), "velocity": np.ones((1, 3))},
-        "law_of": {"name": "linearized", "a": 0.08, "description": {}},
+        "law_of": {"law": "linearized", "a": 0.08},
         "locate_bifurcations": {"branch": branch},
         "mode_amplitudes": {"model": MODEL, "state": STATE, "duration": 10.0},
         "multipliers": {"orbit": orbit},
@@ -120,21 +117,17 @@ def correct_calls():
             "step": 0.1,
         },
         "simulate": {
-            "law": "linearized",
-            "a": 0.08,
+            "model": EDGE_MODEL,
             "initial": "minus",
             "settings": None,
-            "chain": None,
-            "v": 0.1,
             **QUICK,
         },
         "decode_flags": {"flags": xarray.DataArray([0], attrs={"flag_values": [0], "flag_meanings": "stop"})},
         "sweep": {
-            "law": "linearized",
-            "a": [0.08],
+            "model": EDGE_MODEL,
             "initial": "minus",
             "settings": None,
-            "chain": None,
+            "a": [0.08],
             "v": [0.1],
             **QUICK,
         },
@@ -178,7 +171,7 @@ METHODS = {
     "ModeAmplitudes.line": lambda: (mode_amplitudes(MODEL, STATE), {"frequency": 0.1}),
     "ModeAmplitudes.line_shares": lambda: (mode_amplitudes(MODEL, STATE), {"frequency": 0.1}),
     "Law.at": lambda: (MODEL.law, {}),
-    "FormulaLaw.at": lambda: (FormulaLaw(0.1, "1 - c*a*u", c=0.5), {"c": 0.4}),
+    "FormulaLaw.at": lambda: (FormulaLaw("1 - c*a*u", a=0.1, c=0.5), {"c": 0.4}),
     "PeriodicOrbit.events_of": lambda: (CALLS["follow"]["orbit"], {"block": 1}),
     "PeriodicOrbit.start": lambda: (CALLS["follow"]["orbit"], {"block": 1}),
     "PeriodicOrbit.stick_time": lambda: (CALLS["follow"]["orbit"], {"block": 1}),
@@ -283,8 +276,8 @@ def test_help_shows_plain_types(kind):
 def test_results_print_in_a_line_or_two():
     orbit = CALLS["follow"]["orbit"]
     branch = CALLS["locate_bifurcations"]["branch"]
-    run = simulate("linearized", 0.08, "plus", **QUICK)
-    attractors, _ = burridge_knopoff.find_attractors("linearized", 0.08, SEARCH)
+    run = simulate(Model("linearized", a=0.08), "plus", **QUICK)
+    attractors, _ = burridge_knopoff.find_attractors(EDGE_MODEL, SEARCH)
     for result in (run, run.final, MODEL, orbit, branch[0], burridge_knopoff.multipliers(orbit), *attractors):
         assert "\n" not in repr(result)
         assert len(repr(result)) <= 240, repr(result)

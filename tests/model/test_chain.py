@@ -70,7 +70,7 @@ def test_the_chain_of_the_paper():
     chain = Chain(3)
     assert chain.stiffness.tolist() == [[2, -1, 0], [-1, 4, -1], [0, -1, 2]]
     assert chain.driving.tolist() == [1, 2, 1]
-    for friction in (1.0, float(law_of("linearized", 0.08)(0.1))):
+    for friction in (1.0, float(law_of("linearized", a=0.08)(0.1))):
         expected = friction * np.array([-5 / 6, -2 / 3, -5 / 6])
         assert chain.sliding_offset(friction) == pytest.approx(expected, rel=0.0, abs=2e-16)
     assert friction == pytest.approx(1 - 0.008, abs=1e-15)
@@ -150,7 +150,7 @@ def test_forces_on_anything_that_numpy_reads(chain):
 def test_cached_arrays_are_read_only():
     chain = Chain(3, coupling=np.array(0.5), pulling=2.0)
     arrays = [chain.thresholds, chain.coupling_to_previous, chain.coupling_to_next, chain.driving, Chain(3).driving]
-    for array in (*arrays, Model(chain, law_of("linearized", 0.1)).sliding_offset):
+    for array in (*arrays, Model("linearized", a=0.1, chain=chain).sliding_offset):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 2.0
 
@@ -164,6 +164,6 @@ def test_ends_are_compared_by_value():
     "options", [{"coupling": [1.0, 2.0]}, {"pulling": [1.0, 2.0, 3.0]}, {"threshold": [1.0, 1.0, 2]}, {"ends": "ring"}]
 )
 def test_unequal_springs_have_no_closed_form(options):
-    law = law_of("linearized", 0.1)
-    assert Model(Chain(3, coupling=0.5, pulling=2.0, threshold=1.5), law).has_closed_form
-    assert not Model(Chain(3, **options), law).has_closed_form
+    law = law_of("linearized", a=0.1)
+    assert Model(law, coupling=0.5, pulling=2.0, threshold=1.5).has_closed_form
+    assert not Model(law, blocks=3, **options).has_closed_form

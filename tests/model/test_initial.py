@@ -11,11 +11,11 @@ from burridge_knopoff.running.command import simulate_command
 from tests.refused import refused
 
 LAWS = (
-    law_of("linearized", 0.08),
-    law_of("linearized", 0.2345),
-    law_of("nonlinear", 0.3),
-    law_of("carlson_langer", 0.1),
-    FormulaLaw(0.1, "1 - v*tanh(a*u/v)", v=0.2),
+    law_of("linearized", a=0.08),
+    law_of("linearized", a=0.2345),
+    law_of("nonlinear", a=0.3),
+    law_of("carlson_langer", a=0.1),
+    FormulaLaw("1 - c*tanh(a*u/c)", a=0.1, c=0.2),
 )
 CHAINS = (
     Chain(3),
@@ -61,7 +61,7 @@ def test_initial_state_by_name_or_numbers():
 @pytest.mark.parametrize("law", LAWS, ids=str)
 @pytest.mark.parametrize("state", PAPER_STATES.values(), ids=PAPER_STATES)
 def test_at_the_v_of_the_paper_its_numbers_are_those_of_the_paper(state, law, chain):
-    model = Model(chain, law, 0.1)
+    model = Model(law, chain=chain, v=0.1)
     followed, numbers = (model.initial_coordinates(initial) for initial in (state, as_numbers(state)))
     assert np.array_equal(followed, numbers)
     assert np.array_equal(numbers, [state.position, state.velocity])
@@ -72,7 +72,7 @@ def test_at_the_v_of_the_paper_its_numbers_are_those_of_the_paper(state, law, ch
 @pytest.mark.parametrize("chain", CHAINS)
 @pytest.mark.parametrize("law", LAWS, ids=str)
 def test_velocities_and_distances_from_uniform_sliding_are_in_proportion_to_v(law, chain, v):
-    model, at_paper = Model(chain, law, v), Model(chain, law, 0.1)
+    model, at_paper = Model(law, chain=chain, v=v), Model(law, chain=chain, v=0.1)
     for state in PAPER_STATES.values():
         position, velocity = model.initial_coordinates(state)
         distance = np.array(state.position) - uniform_sliding(at_paper)
@@ -86,18 +86,18 @@ def test_velocities_and_distances_from_uniform_sliding_are_in_proportion_to_v(la
 def test_the_mean_distance_is_in_proportion_to_v_under_the_linearized_law():
     """Twice the 0.14064 of a = 0.08 at the v of the paper is 0.28128."""
     v = [0.01, 0.1, 0.2, 3.0]
-    runs = sweep("linearized", [0.05, 0.08], "plus", v=v)
+    runs = sweep(Model("linearized"), "plus", a=[0.05, 0.08], v=v)
     assert runs["mean_distance"].sel(a=0.08, v=0.2).item() == pytest.approx(0.28128, abs=1e-5)
     ratio = runs["mean_distance"] / runs["mean_distance"].sel(v=0.1)
     np.testing.assert_allclose(ratio.transpose("a", "v"), [np.array(v) / 0.1] * 2, rtol=1e-9)
-    assert (sweep("linearized", 0.08, "minus", v=v)["mean_distance"] < 1e-12).all()
+    assert (sweep(Model("linearized"), "minus", a=0.08, v=v)["mean_distance"] < 1e-12).all()
 
 
 @pytest.mark.parametrize("start", ["moving", "tested"])
 @pytest.mark.parametrize("initial", PAPER_STATES)
 def test_the_motion_is_in_proportion_to_v_under_the_linearized_law(initial, start):
     runs = [
-        simulate("linearized", 0.15, initial, v=v, transient=0.0, window=150.0, events="all", start=start)
+        simulate(Model("linearized", a=0.15, v=v), initial, transient=0.0, window=150.0, events="all", start=start)
         for v in (0.1, 0.037)
     ]
     one, other = ((run.event_position - run.model.sliding_offset) / run.model.v for run in runs)
@@ -109,7 +109,7 @@ def test_the_motion_is_in_proportion_to_v_under_the_linearized_law(initial, star
 
 def test_a_run_is_repeated_from_its_initial_state_and_stores_where_it_began():
     options = {"transient": 0.0, "window": 20.0, "events": "all"}
-    run = simulate("nonlinear", 0.2, "plus", v=0.3, **options)
+    run = simulate(Model("nonlinear", a=0.2, v=0.3), "plus", **options)
     again = simulate(run.model, initial=run.initial, **options)
     stored = run.to_dataset()
     numbers = (stored["initial_position"].values, stored["initial_velocity"].values)
@@ -124,8 +124,8 @@ GIVEN = {
     "a state of the paper": "plus",
     "one number": {"position": -0.9, "velocity": 0.3},
     "random": InitialState("rough", "random=uniform,low=-1.5,high=-0.5,seed=1", 0.3),
-    "a state of a motion": Model(Chain(3), law_of("nonlinear", 0.08), 0.5).begin(PAPER_STATES["minus"], "tested"),
-    "a run": simulate("nonlinear", 0.08, "plus", v=0.5, transient=0.0, window=7.5),
+    "a state of a motion": Model("nonlinear", a=0.08, v=0.5).begin(PAPER_STATES["minus"], "tested"),
+    "a run": simulate(Model("nonlinear", a=0.08, v=0.5), "plus", transient=0.0, window=7.5),
 }
 
 
@@ -135,7 +135,7 @@ GIVEN = {
 def test_the_initial_state_of_a_run_is_that_from_which_it_started(form, start):
     """It is where the recorded motion begins, whatever form was given; the command of the file names that form."""
     options = {"transient": 0.0, "window": 20.0, "trajectory": 20.0, "trajectory_sampling": 0.5, "start": start}
-    run = simulate(Model(Chain(3), law_of("nonlinear", 0.08), 0.5), initial=GIVEN[form], **options)
+    run = simulate(Model("nonlinear", a=0.08, v=0.5), initial=GIVEN[form], **options)
     assert run.trajectory_time[0] == run.begin_time
     assert run.initial.position == pytest.approx(run.position[0], abs=1e-14)
     assert run.initial.velocity == pytest.approx(run.velocity[0], abs=1e-14)
@@ -145,7 +145,7 @@ def test_the_initial_state_of_a_run_is_that_from_which_it_started(form, start):
     again = simulate(run.model, initial=run.initial, **options)
     assert again.initial.position == run.initial.position
     # The name of a state of the paper does not go with other numbers.
-    elsewhere = simulate("linearized", 0.08, run.initial, v=0.2, **options)
+    elsewhere = simulate(Model("linearized", a=0.08, v=0.2), run.initial, **options)
     assert elsewhere.initial.position == run.initial.position
     assert elsewhere.initial.name == ("own" if form == "a state of the paper" else run.initial.name)
 
@@ -153,24 +153,26 @@ def test_the_initial_state_of_a_run_is_that_from_which_it_started(form, start):
 def test_a_printed_run_tells_what_is_not_the_papers():
     """Of the paper's model only the law and a."""
     short = {"transient": 0.0, "window": 1.0}
-    paper = simulate("nonlinear", 0.1, "plus", **short)
+    paper = simulate(Model("nonlinear", a=0.1), "plus", **short)
     assert repr(paper).startswith("<Trajectory of 3 blocks from plus, nonlinear law, a = 0.1: ")
     springs = {"coupling": (1.5, 1.0), "pulling": 0.5, "damping": 0.1, "pulling_damping": 0.2}
     blocks = {"threshold": (1.0, 1.0, 1.5), "mass": 2.0, "weakening": (1.0, 0.0, 1.0)}
-    model = Model(Chain(3, **springs, **blocks), law_of("stribeck", 0.1, {"sigma": 0.02}), 0.3, "symmetric")
+    model = Model("stribeck", a=0.1, sigma=0.02, blocks=3, **springs, **blocks, v=0.3, contact="symmetric")
     printed = repr(simulate(model, initial="plus", **short))
     for name, value in {**springs, **blocks, "sigma": 0.02, "v": 0.3, "contact": "symmetric"}.items():
         assert f", {name} = {value!r}" in printed
-    assert "law 1 - c*a*u, a = 0.1, c = 0.5" in repr(simulate({"formula": "1 - c*a*u", "c": 0.5}, 0.1, **short))
+    assert "law 1 - c*a*u, a = 0.1, c = 0.5" in repr(
+        simulate(Model({"formula": "1 - c*a*u", "c": 0.5}, a=0.1), **short)
+    )
 
 
 def test_own_numbers_are_taken_as_they_are_under_any_name():
     plus = PAPER_STATES["plus"]
     for form in (as_numbers(plus), {"name": "plus", "position": plus.position, "velocity": plus.velocity}):
-        stored = simulate("linearized", 0.08, form, v=0.2, transient=0.0, window=1.0).to_dataset()
+        stored = simulate(Model("linearized", a=0.08, v=0.2), form, transient=0.0, window=1.0).to_dataset()
         assert stored["initial_position"].values.tolist() == list(plus.position)
     with refused("initial.name: 'plus'"):
-        simulate("linearized", 0.08, {"name": "plus", "position": plus.position, "velocity": (0.1, 0.1, 0.1)})
+        simulate(Model("linearized", a=0.08), {"name": "plus", "position": plus.position, "velocity": (0.1, 0.1, 0.1)})
 
 
 @pytest.mark.parametrize("kind", [InitialState, PaperState])

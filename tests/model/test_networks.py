@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
-from burridge_knopoff import Chain, InitialState, Model, law_of
+from burridge_knopoff import Chain, InitialState, Model
 from burridge_knopoff.model.solving import nearest_solution
 from burridge_knopoff.model.springs import read_edges
 from tests.refused import refused
@@ -214,7 +214,7 @@ def test_a_symmetric_grid_has_symmetric_sliding_positions():
 def test_unequal_masses_break_the_mirror_symmetry():
     assert Chain(3, mass=2.0).is_mirror_symmetric
     assert not Chain(3, mass=(1.0, 1.0, 2.0)).is_mirror_symmetric
-    assert not Model(Chain(3, mass=2.0), law_of("linearized", 0.1)).has_closed_form
+    assert not Model("linearized", a=0.1, mass=2.0).has_closed_form
     assert not Chain(3, mass=2.0).is_equivalent_to(Chain(3))
     assert Chain(3, mass=(1.0, 1.0, 1.0)).is_equivalent_to(Chain(3))
 
@@ -222,7 +222,7 @@ def test_unequal_masses_break_the_mirror_symmetry():
 def test_unequal_friction_breaks_the_mirror_symmetry():
     assert Chain(3, weakening=(1.0, -0.5, 1.0)).is_mirror_symmetric
     assert not Chain(3, weakening=(1.0, 1.0, 0.5)).is_mirror_symmetric
-    assert not Model(Chain(3, weakening=0.5), law_of("linearized", 0.1)).has_closed_form
+    assert not Model("linearized", a=0.1, weakening=0.5).has_closed_form
     assert Chain(3, weakening=(1.0, -0.5, 1.0)).different_key(Chain(3)) == "weakening"
     assert Chain(3, weakening=(1.0, 1.0, 1.0)).is_equivalent_to(Chain(3))
 
@@ -249,7 +249,7 @@ def test_initial_states_of_any_number_of_blocks():
     position, velocity = rough.coordinates(60)
     assert (position == rough.coordinates(70)[0][:60]).all()
     assert velocity.tolist() == 60 * [0.25]
-    at = Model(Chain(60), law_of("linearized", 0.1)).begin(rough)
+    at = Model("linearized", a=0.1, blocks=60).begin(rough)
     assert at.velocity.tolist() == 60 * [0.25]
     assert (InitialState("own", 0.5, 0.0).blocks, InitialState("own", UNIFORM, (0.0, 0.1)).blocks) == (1, 2)
     with refused("blocks: 3"):

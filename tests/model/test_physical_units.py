@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from burridge_knopoff import PhysicalUnits, simulate
+from burridge_knopoff import Model, PhysicalUnits, simulate
 from tests.refused import refused
 
 SIZES = st.floats(1e-3, 1e3)
@@ -30,7 +30,11 @@ def test_a_block_in_si_units():
     solved = solve_ivp(motion, (0.0, 100.0), start, events=stops, rtol=1e-12, atol=1e-14)
     initial = ([position / units.length], [begin_velocity / units.velocity])
     run = simulate(
-        "linearized", units.a(slope), initial, v=units.v(speed), pulling=1.0, transient=0, window=200, events="all"
+        Model("linearized", a=units.a(slope), v=units.v(speed), blocks=1, pulling=1.0),
+        initial,
+        transient=0,
+        window=200,
+        events="all",
     )
     assert run.event_kind[0] == 0
     assert run.event_time[0] * units.time == pytest.approx(solved.t_events[0][0], rel=1e-9)

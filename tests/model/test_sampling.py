@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Model
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.model.distances import distance_form
 from burridge_knopoff.model.sampling import velocity_range
@@ -21,7 +21,7 @@ def test_an_end_is_the_value_of_its_formula(formula, v):
     """A formula may have no value at a v at which it is not asked for, here at 1."""
     settings = SearchSettings(velocity=[formula, 10.0])
     assert settings.velocity == (formula, 10.0)
-    model = Model(Chain(1), law_of("linearized", 0.1), v=v, contact="symmetric")
+    model = Model("linearized", a=0.1, blocks=1, v=v, contact="symmetric")
     assert np.allclose(velocity_range(settings.velocity, model, "velocity"), (FORMULAS[formula](v), 10.0), rtol=1e-15)
 
 

@@ -27,7 +27,7 @@ OPTIONS = {"initial": STATE, "transient": 0.0, "events": "all"}
 @pytest.mark.parametrize("name", ["linearized", "nonlinear", "exponential", "carlson_langer"])
 def test_equal_weakening_is_a_factor_of_a(name):
     runs = [
-        simulate(Model(Chain(3, weakening=w), law_of(name, a), contact="symmetric"), window=40.0, **OPTIONS)
+        simulate(Model(name, a=a, weakening=w, contact="symmetric"), window=40.0, **OPTIONS)
         for w, a in ((0.25, 0.4), (1.0, 0.1))
     ]
     one, other = runs
@@ -44,8 +44,8 @@ def test_without_weakening_friction_is_that_of_coulomb():
     """All laws, and any a, then give the same motion, in which no energy is gained."""
     chain = Chain(3, weakening=0.0)
     runs = [
-        simulate(Model(chain, law_of(*law)), window=40.0, **OPTIONS)
-        for law in (("linearized", 0.0), ("nonlinear", 3.0))
+        simulate(Model(law, a=a, chain=chain), window=40.0, **OPTIONS)
+        for law, a in (("linearized", 0.0), ("nonlinear", 3.0))
     ]
     assert np.array_equal(*(run.event_time for run in runs))
     assert runs[0].least_friction == 1.0
@@ -55,7 +55,7 @@ def test_without_weakening_friction_is_that_of_coulomb():
 def test_distances_are_in_proportion_to_v_under_the_linearized_law():
     chain, means = Chain(3, weakening=(1.0, -0.5, 0.0)), []
     for v in (0.1, 0.05):
-        model = Model(chain, law_of("linearized", 0.3), v)
+        model = Model("linearized", a=0.3, chain=chain, v=v)
         x = v * np.array([1.0, -2.0, 0.5])
         state = InitialState("scaled", tuple(model.sliding_offset + x), (v, 1.1 * v, 0.9 * v))
         means.append(simulate(model, initial=state, transient=0.0, window=40.0).mean_distance / model.scale)
@@ -64,7 +64,7 @@ def test_distances_are_in_proportion_to_v_under_the_linearized_law():
 
 def test_the_least_friction_is_a_bound_over_all_blocks():
     """It is that of the block that weakens most at the speed of the fastest block."""
-    model = Model(Chain(3, weakening=(1.0, -0.5, 2.0)), law_of("linearized", 0.2))
+    model = Model("linearized", a=0.2, weakening=(1.0, -0.5, 2.0))
     run = simulate(model, window=20.0, trajectory=20.0, trajectory_sampling=1e-3, **OPTIONS)
     assert run.least_friction == pytest.approx(1.0 - 0.4 * run.velocity.max(), rel=1e-6)
 
@@ -72,7 +72,7 @@ def test_the_least_friction_is_a_bound_over_all_blocks():
 def test_one_block_slides_where_its_dashpot_outweighs_its_friction():
     """The velocity of sliding obeys u'' = −u − (γ − g) u' with g = a w/(1 + a w v)², which is γ at the bifurcation."""
     a, v, gamma = 0.5, 0.4, 0.1
-    model = Model(Chain(1, pulling=1.0, pulling_damping=gamma), law_of("nonlinear", a), v, "symmetric")
+    model = Model("nonlinear", a=a, blocks=1, pulling=1.0, pulling_damping=gamma, v=v, contact="symmetric")
     (at,) = hopf_bifurcations(model, (-0.1, 0.6), parameter="weakening[1]")
     slope = a * at.value / (1.0 + a * at.value * v) ** 2
     assert slope == pytest.approx(gamma, rel=1e-12)
@@ -81,7 +81,7 @@ def test_one_block_slides_where_its_dashpot_outweighs_its_friction():
 
 def test_an_orbit_of_blocks_that_weaken_and_strengthen():
     """Its return against SciPy, and its monodromy matrix against finite differences."""
-    orbit = synchronized_orbit(Model(Chain(3, weakening=(1.0, -0.3, 1.0)), law_of("nonlinear", 0.15)))
+    orbit = synchronized_orbit(Model("nonlinear", a=0.15, weakening=(1.0, -0.3, 1.0)))
     _, end = model_events(orbit.model, orbit.reference, orbit.period)
     assert end == pytest.approx(orbit.reference.vector(), abs=1e-8)
     expected, _ = differences(orbit.model, orbit.reference, orbit.period, 1e-4)
@@ -91,7 +91,7 @@ def test_an_orbit_of_blocks_that_weaken_and_strengthen():
 
 def test_perturbations_where_friction_grows_exponentially():
     """Against finite differences, also from a speed at which the friction of the second block is ten thresholds."""
-    model = Model(Chain(3, weakening=(1.0, -1.0, 0.5)), FormulaLaw(2.0, "0.95*exp(-a*u)"))
+    model = Model(FormulaLaw("0.95*exp(-a*u)", a=2.0), weakening=(1.0, -1.0, 0.5))
     start = ChainState(np.array([0.3, -0.2, 0.1]), np.array([0.1, 1.2, 0.3]), np.zeros(3, dtype=bool))
     perturbations = carry(model, start, 3.0, directions(start))[0].perturbations
     expected, _ = differences(model, start, 3.0, 1e-4)
@@ -99,33 +99,33 @@ def test_perturbations_where_friction_grows_exponentially():
 
 
 def test_a_sweep_over_the_weakening_of_one_block():
-    model = Model(Chain(3), law_of("linearized", 0.2))
+    model = Model("linearized", a=0.2)
     runs = sweep(model, initial="plus", **{"weakening[2]": [1.0, -0.5]}, transient=0.0, window=20.0)
     for factor in (1.0, -0.5):
         run = simulate(model.at(**{"weakening[2]": factor}), initial="plus", transient=0.0, window=20.0)
         assert runs["mean_distance"].sel(weakening_2=factor).item() == run.mean_distance
     assert run.model.chain.weakening == (1.0, -0.5, 1.0)
-    assert run.model.a == 0.2
+    assert run.model.parameter("a") == 0.2
 
 
 def test_friction_that_grows_must_be_analytic_too():
     """1/(1 − w a u) has a pole at u = 1/(w a)."""
-    assert Model(Chain(3, weakening=-0.3), law_of("nonlinear", 0.3)).a == 0.3
+    assert Model("nonlinear", a=0.3, weakening=-0.3).parameter("a") == 0.3
     with refused("chain.weakening: (1.0, -0.5, 0.0)", "the law nonlinear is analytic"):
-        Model(Chain(3, weakening=(1.0, -0.5, 0.0)), law_of("nonlinear", 0.3))
+        Model("nonlinear", a=0.3, weakening=(1.0, -0.5, 0.0))
     with refused("chain.weakening: 20.0", "analytic"):
-        Model(Chain(3, weakening=20.0), FormulaLaw(0.1, "1/(1 + a*u) + 0.0001*log(1 - u/64)"))
+        Model(FormulaLaw("1/(1 + a*u) + 0.0001*log(1 - u/64)", a=0.1), weakening=20.0)
 
 
 def test_only_blocks_that_strengthen_creep():
-    law = law_of("carlson_langer", 0.05, {"sigma": 0.1})
-    assert creep_speed(Model(Chain(3), law), "quasistatic") == 0.0
-    assert creep_speed(Model(Chain(3, weakening=(1.0, -0.1, 1.0)), law), "quasistatic") > 0.0
+    law = law_of("carlson_langer", a=0.05, sigma=0.1)
+    assert creep_speed(Model(law), "quasistatic") == 0.0
+    assert creep_speed(Model(law, weakening=(1.0, -0.1, 1.0)), "quasistatic") > 0.0
 
 
 def test_what_requires_equal_blocks_says_so():
     with refused("solver: 'map'", "uniform"):
-        simulate(Model(Chain(3, weakening=0.5), law_of("linearized", 0.1)), solver="map")
-    model = Model(Chain(3, weakening=(1.0, 1.0, 0.5)), law_of("linearized", 0.1))
+        simulate(Model("linearized", a=0.1, weakening=0.5), solver="map")
+    model = Model("linearized", a=0.1, weakening=(1.0, 1.0, 0.5))
     with refused("chain", "its own mirror image"):
         synchronized_orbit(model)

@@ -5,9 +5,7 @@ import math
 import pytest
 
 from burridge_knopoff import (
-    Chain,
     Model,
-    law_of,
 )
 from burridge_knopoff.motion.chain_synchronization import Sample
 from tests.periodic_orbits.exact import SHIFT
@@ -18,7 +16,7 @@ SAMPLE = Sample(samples=6, seed=1, position=(-1.5, 1.5), velocity=(0.0, 0.2), sy
 
 
 def model(blocks, a, law="linearized"):
-    return Model(Chain(blocks), law_of(law, a), V)
+    return Model(law, a=a, blocks=blocks, v=V)
 
 
 def two_block_exponent(law, a):

@@ -4,12 +4,12 @@ from typing import Any
 
 import numpy as np
 
-from burridge_knopoff import Attractor, Chain, Model, MotionKind, SteadyMotion, Symmetry, law_of
+from burridge_knopoff import Attractor, Model, MotionKind, SteadyMotion, Symmetry
 from burridge_knopoff.motion.section_returns import Returns
 
 CLOSED = (MotionKind.PERIODIC, MotionKind.SYNCHRONIZED)
 ASYMMETRIC, SYMMETRIC, SYNCHRONIZED = Symmetry.ASYMMETRIC, Symmetry.SYMMETRIC, Symmetry.SYNCHRONIZED
-MODEL = Model(Chain(3), law_of("linearized", 0.08))
+MODEL = Model("linearized", a=0.08)
 #: Returns of an arbitrary motion.
 ROWS = np.random.default_rng(4).uniform(-1.0, 1.0, (40, 6))
 

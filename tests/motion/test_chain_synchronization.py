@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import (
-    Chain,
     ChainState,
     FormulaLaw,
     InitialState,
     Model,
-    law_of,
     simulate,
     transverse_exponent,
 )
@@ -68,7 +66,7 @@ def test_three_blocks_against_whole_runs(law):
     for a in (0.06, 0.2):
         for state in SAMPLE.initial_states(3)[:4]:
             mine = fate(model(3, a, law), state, watch)
-            run = simulate(law, a, state, transient=2250.0, window=750.0, sampling=INTERVAL, events="none")
+            run = simulate(Model(law, a=a), state, transient=2250.0, window=750.0, sampling=INTERVAL, events="none")
             outcomes.add(mine.outcome)
             if mine.outcome == Outcome.SYNCHRONIZED:
                 assert run.mean_distance < 1e-9
@@ -157,7 +155,7 @@ def test_distances_and_the_exponent_decide_the_fate(script_answers, distances, e
 def test_distances_scale_with_the_driver_velocity(script_answers, v, pair, near):
     """Distances of pairs scale only below the paper's velocity, those from symmetric motion at any velocity."""
     runner = Scripted([])
-    runner.model = Model(Chain(4), law_of("linearized", 0.1), v)
+    runner.model = Model("linearized", a=0.1, blocks=4, v=v)
     for share, inside in ((0.99, True), (1.01, False)):
         calls = script_answers(chains, "transverse_exponent", [(1.0, 0.1)] * 2)
         runner.distances = [(0.5, share * pair)] * 10
@@ -206,7 +204,12 @@ def test_a_watched_chain_equals_its_states_one_by_one():
         symmetric = np.stack([results[f"symmetric_{name}"][i, j] for name in ("exponent", "error")], axis=1)
         assert symmetric.tolist() == [list(item) for item in exponents]
         run = simulate(
-            law, a, SAMPLE.initial_states(3, a)[0], transient=300.0, window=300.0, batches=5, lyapunov_exponents=1
+            Model(law, a=a),
+            SAMPLE.initial_states(3, a)[0],
+            transient=300.0,
+            window=300.0,
+            batches=5,
+            lyapunov_exponents=1,
         )
         assert results["lyapunov_exponent"][i, j] == pytest.approx(run.lyapunov_exponent[0], rel=1e-9)
         assert results["lyapunov_error"][i, j] == pytest.approx(run.lyapunov_error[0], rel=1e-9)
@@ -229,7 +232,7 @@ def test_each_a_has_its_own_states():
 
 
 def test_a_chain_without_mirror_blocks_is_refused():
-    chain = Model(Chain(3, threshold=(1.0, 1.0, 0.9)), law_of("linearized", 0.05))
+    chain = Model("linearized", a=0.05, threshold=(1.0, 1.0, 0.9))
     state = chain.begin(InitialState("state", (-1.0, -0.9, -1.0), (0.1, 0.1, 0.1)))
     for call in (
         lambda: transverse_exponent(chain, state, 10.0, 10.0),
@@ -242,7 +245,7 @@ def test_a_chain_without_mirror_blocks_is_refused():
 
 def test_a_ring_synchronizes_if_its_transverse_exponent_is_negative():
     """Four blocks in a ring, with a formula for friction, synchronize where the symmetric motion attracts."""
-    ring = Model(Chain(4, ends="ring"), FormulaLaw(0.02, "1/(1 + a*u)**2"))
+    ring = Model(FormulaLaw("1/(1 + a*u)**2", a=0.02), blocks=4, ends="ring")
     start = symmetrized(ring.begin(InitialState("state", (-1.0, -0.9, -0.9, -1.0), (0.1, 0.1, 0.1, 0.1))))
     exponent, error = transverse_exponent(ring, start, 500.0, 1000.0)
     assert exponent < -10.0 * error

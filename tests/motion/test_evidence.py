@@ -8,12 +8,10 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import (
-    Chain,
     ChainState,
     Model,
     MotionKind,
     hopf_bifurcations,
-    law_of,
     limit_cycle,
     simulate,
     sweep,
@@ -47,7 +45,7 @@ def test_a_short_run_has_the_kind_of_a_long_one_or_none(transient, window, v):
 @pytest.mark.parametrize("law", LAWS)
 def test_motion_that_approaches_synchrony_is_undetermined_until_it_is_there(law, contact):
     """Section points repeat to 1e-6 long before J is below 1e-6."""
-    model = Model(Chain(3), law_of(law, 0.08), 0.1, contact)
+    model = Model(law, a=0.08, v=0.1, contact=contact)
     runs = [simulate(model, initial="minus", transient=transient, window=500.0) for transient in (500.0, 1500.0)]
     assert [run.kind for run in runs] == [MotionKind.UNDETERMINED, MotionKind.SYNCHRONIZED]
     assert runs[0].mean_distance > 1e-6
@@ -59,7 +57,7 @@ def test_motion_that_approaches_synchrony_is_undetermined_until_it_is_there(law,
 @pytest.mark.parametrize("law", LAWS)
 def test_motion_that_leaves_synchrony_is_not_synchronized(law):
     """Above a_c a small antisymmetric displacement grows, which W does not show."""
-    model = Model(Chain(3), law_of(law, 0.12))
+    model = Model(law, a=0.12)
     settled = simulate(
         model, initial={"position": [-0.99] * 3, "velocity": [0.1, 0.1012, 0.1]}, transient=2000.0, window=10.0
     )
@@ -81,7 +79,7 @@ def test_motion_that_leaves_synchrony_is_not_synchronized(law):
 )
 def test_the_period_of_a_symmetric_orbit_does_not_depend_on_what_is_recorded(law, a, transient, points):
     options = ({}, {"events": "all"}, {"event_window": 7000.0}, {"event_window": 2500.0})
-    runs = [simulate(law, a, "plus", transient=transient, **recorded) for recorded in options]
+    runs = [simulate(Model(law, a=a), "plus", transient=transient, **recorded) for recorded in options]
     orbit = limit_cycle(runs[0].model, runs[0].final)
     assert orbit.symmetry == Symmetry.SYMMETRIC
     for run in runs:
@@ -89,19 +87,21 @@ def test_the_period_of_a_symmetric_orbit_does_not_depend_on_what_is_recorded(law
         assert (motion.kind, motion.section_period) == (MotionKind.PERIODIC, points)
         assert motion.period == pytest.approx(orbit.period, rel=1e-8)
     # Section points alone do not tell a state from its mirror image.
-    none = simulate(law, a, "plus", transient=transient, events="none", trajectory=0.0).motion()
+    none = simulate(Model(law, a=a), "plus", transient=transient, events="none", trajectory=0.0).motion()
     assert (none.kind, none.section_period, math.isnan(none.period)) == (MotionKind.PERIODIC, 0, True)
     # Half of the period is below the longest period, the period is not.
     longest = replace(MOTION, longest_period=0.75 * orbit.period)
     assert [run.motion(longest).kind for run in runs] == len(runs) * [MotionKind.QUASIPERIODIC]
-    assert simulate(law, a, "plus", transient=transient, events="none", trajectory=0.0).motion(longest).kind == -1
+    assert (
+        simulate(Model(law, a=a), "plus", transient=transient, events="none", trajectory=0.0).motion(longest).kind == -1
+    )
 
 
 def test_the_trajectory_shows_the_period_where_no_events_are_kept():
     """Of orbits shorter than the trajectory: synchrony, its own mirror image after half a period, and neither."""
     for a, initial in ((0.08, "minus"), (0.1, "minus"), (0.29, "plus")):
-        kept = simulate("linearized", a, initial).motion()
-        bare = simulate("linearized", a, initial, events="none").motion()
+        kept = simulate(Model("linearized", a=a), initial).motion()
+        bare = simulate(Model("linearized", a=a), initial, events="none").motion()
         assert (bare.kind, bare.section_period) == (kept.kind, kept.section_period)
         assert bare.period == pytest.approx(kept.period, rel=1e-9)
 
@@ -135,8 +135,8 @@ def test_a_periodic_orbit_has_one_mean_distance_however_many_batches(last, kind,
 def test_synchrony_does_not_hide_an_amplitude_that_decays(transient, kind):
     """Next to the Hopf point two blocks in phase decay at a rate of 2e-5; ⟨J⟩ is 0."""
     law = {"formula": "1 - a*u + b*u**3"}
-    options = {"parameter": "v", "b": 0.3, "blocks": 2, "coupling": 0.4, "pulling": 1, "damping": 0.05}
-    critical = hopf_bifurcations(law, 0.5, (0.4, 1.0), **options)[-1]
+    model = Model(law, a=0.5, b=0.3, blocks=2, coupling=0.4, pulling=1, damping=0.05)
+    critical = hopf_bifurcations(model, (0.4, 1.0), parameter="v")[-1]
     model = critical.model.at(v=critical.value * (1.0 - 2e-5))
     state = {"position": [0.02, 0.02], "velocity": [model.v] * 2}
     run = simulate(model, initial=state, transient=transient, window=760.0 + transient / 20.0)

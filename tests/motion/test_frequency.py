@@ -11,7 +11,6 @@ from burridge_knopoff import (
     InitialState,
     Model,
     block_frequencies,
-    law_of,
     limit_cycle,
     simulate,
 )
@@ -23,11 +22,11 @@ from tests.scipy_flow import model_events
 THREE = Chain(3)
 
 #: Sliding friction of 2/3 at every velocity, below the static friction of 1.
-DROPPING = FormulaLaw(0.5, "1/(1 + a)")
+DROPPING = FormulaLaw("1/(1 + a)", a=0.5)
 
 
 def detuned_model(a, detuning, law="linearized"):
-    return Model(THREE, law_of(law, a)).at(**{"mass[3]": 1.0 + detuning})
+    return Model(law, a=a, chain=THREE).at(**{"mass[3]": 1.0 + detuning})
 
 
 def from_plus(model):
@@ -118,7 +117,7 @@ def relaxation_period(law, v):
 @pytest.mark.parametrize("cycles", [3.2, 6.1, 60.3])
 def test_the_frequency_of_a_relaxation_oscillation_is_the_rate_of_slips(v, cycles):
     """At small v the lines of its spectrum have nearly one height, and any of them may be the highest."""
-    model = Model(Chain(1, pulling=1.0), DROPPING, v=v)
+    model = Model(DROPPING, blocks=1, pulling=1.0, v=v)
     period = relaxation_period(DROPPING, v)
     start = model.begin(InitialState("rest", (-0.5,), (0.0,)), "tested")
     settled = simulate(model, initial=start, transient=0.0, window=2.4 * period, lyapunov_exponents=0).final
@@ -131,7 +130,7 @@ def test_the_frequency_of_a_relaxation_oscillation_is_the_rate_of_slips(v, cycle
 @pytest.mark.parametrize("cycles", [0.4, 0.9, 1.3, 1.8])
 @pytest.mark.parametrize("v", [3e-4, 1e-2, 0.1])
 def test_less_than_two_cycles_have_no_frequency(v, cycles):
-    model = Model(Chain(1, pulling=1.0), DROPPING, v=v)
+    model = Model(DROPPING, blocks=1, pulling=1.0, v=v)
     period = relaxation_period(DROPPING, v)
     start = model.begin(InitialState("rest", (-0.5,), (0.0,)), "tested")
     for phase in np.linspace(2.0, 3.0, 9):
@@ -167,7 +166,7 @@ def stop_rates(model, state, duration):
     ],
 )
 def test_in_short_slips_the_frequencies_are_the_rates_of_stops(chain, v, state, never):
-    model = Model(chain, DROPPING, v=v)
+    model = Model(DROPPING, chain=chain, v=v)
     at = simulate(model, initial=model.begin(InitialState("rest", state, (0.0,) * chain.blocks), "tested"),
                   transient=0.0, window=20_000.0, lyapunov_exponents=0).final  # fmt: skip
     rate = stop_rates(model, at, 200_000.0)
@@ -184,7 +183,7 @@ def test_in_short_slips_the_frequencies_are_the_rates_of_stops(chain, v, state, 
 
 
 def test_short_slips_of_two_blocks_are_not_locked_at_a_ratio_of_harmonics():
-    model = Model(Chain(2), DROPPING, v=3e-4)
+    model = Model(DROPPING, blocks=2, v=3e-4)
     state = model.begin(InitialState("rest", (-0.5, -0.6), (0.0, 0.0)), "tested")
     at = simulate(model, initial=state, transient=0.0, window=20_000.0, lyapunov_exponents=0).final
     frequency, error = block_frequencies(model, at)
@@ -197,7 +196,7 @@ def test_a_push_within_a_slip_is_no_further_slip():
     chain = Chain(
         2, coupling=0.6, pulling=(0.6, 0.75), threshold=(0.945, 1.215), mass=(2.84, 2.09), pulling_damping=1.0
     )
-    model = Model(chain, FormulaLaw(0.8, "0.8 + 0.1*a*u"), v=0.011)
+    model = Model(FormulaLaw("0.8 + 0.1*a*u", a=0.8), chain=chain, v=0.011)
     begin = model.begin(InitialState("rest", (-0.9, -0.5), (0.0, 0.0)), "tested")
     at = simulate(model, initial=begin, transient=0.0, window=20.0 / 0.011, lyapunov_exponents=0).final
     events, _ = model_events(model, at, 200.0)
@@ -224,7 +223,7 @@ def test_two_pushes_in_one_slip_of_a_block_that_never_stops():
         mass=(1.0, 0.15, 1.0),
         threshold=(1.0, 1.0, 1.01),
     )
-    model = Model(chain, DROPPING, v=0.011)
+    model = Model(DROPPING, chain=chain, v=0.011)
     begin = model.begin(InitialState("rest", (-0.5, -0.6, -0.7), (0.0,) * 3), "tested")
     at = simulate(model, initial=begin, transient=0.0, window=5000.0, lyapunov_exponents=0).final
     rate = stop_rates(model, at, 4000.0)
@@ -279,7 +278,7 @@ def test_a_block_that_stops_has_its_starts_and_another_has_none():
     ("law", "a", "v"), [("linearized", 0.234, 0.1), ("nonlinear", 0.25, 0.1), ("nonlinear", 0.3, 1.0)]
 )
 def test_in_chaos_the_errors_contain_the_differences_of_successive_times(law, a, v):
-    model = Model(THREE, law_of(law, a), v)
+    model = Model(law, a=a, chain=THREE, v=v)
     state = simulate(model, initial="minus", transient=0.0, window=6000.0, lyapunov_exponents=0).final
     measured = []
     for _ in range(6):
@@ -296,7 +295,7 @@ def test_random_oscillations_are_as_accurate_as_they_say_or_unknown(seed):
     random = np.random.default_rng(seed)
     blocks = int(random.integers(1, 6))
     chain = Chain(blocks, pulling=random.uniform(0.3, 2.0, blocks), mass=random.uniform(0.3, 3.0, blocks))
-    model = Model(chain, law_of("linearized", 0.0))
+    model = Model("linearized", a=0.0, chain=chain)
     squares, shapes = eigh(chain.stiffness, np.diag(chain.masses))
     omega, size = np.sqrt(squares), np.zeros(blocks)
     size[random.permutation(blocks)[:2]] = (1.0, random.uniform(0.0, 0.6))[: min(blocks, 2)]
@@ -321,13 +320,13 @@ def test_random_oscillations_are_as_accurate_as_they_say_or_unknown(seed):
 
 
 def test_uniform_sliding_has_no_frequency():
-    model = Model(THREE, law_of("linearized", 0.06))
+    model = Model("linearized", a=0.06, chain=THREE)
     state = ChainState(np.zeros(3), np.full(3, model.v), np.zeros(3, bool))
     assert np.isnan(block_frequencies(model, state, 50.0)).all()
 
 
 def test_a_duration_that_cannot_be_kept_is_refused():
-    model = Model(Chain(300), law_of("linearized", 0.06))
+    model = Model("linearized", a=0.06, blocks=300)
     state = ChainState(np.zeros(300), np.full(300, model.v), np.zeros(300, bool))
     with refused("duration: 1000000.0"):
         block_frequencies(model, state, 1e6)
@@ -337,7 +336,7 @@ def test_a_duration_that_cannot_be_kept_is_refused():
 
 def test_the_motion_of_a_run_that_diverges_is_refused():
     """Its frequencies were once NaN, like those of a block without cycles."""
-    model = Model(Chain(3), law_of("linearized", 2.5), 0.1, "symmetric")
+    model = Model("linearized", a=2.5, v=0.1, contact="symmetric")
     start = model.begin(InitialState("own", (-1.0, -0.5, -0.8), (0.1, 0.0, 0.2)))
     ended = "diverged at tau = 12.1"
     with refused("duration: 100.0", ended):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, Settings, law_of
+from burridge_knopoff import Chain, InitialState, Model, Settings
 from burridge_knopoff.motion.jumps import event_jumps
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.simulation import run
@@ -23,7 +23,7 @@ CHAINS = {
 @pytest.mark.parametrize("law", ["linearized", "nonlinear"])
 @pytest.mark.parametrize("name", CHAINS)
 def test_jumps_are_those_of_the_simulated_motion(name: str, law: str, contact: str) -> None:
-    model = Model(CHAINS[name], law_of(law, 0.2), contact=contact)
+    model = Model(law, a=0.2, chain=CHAINS[name], contact=contact)
     start = np.linspace(-1.0, 0.6, model.blocks)
     settings = Settings(transient=0.0, window=80.0, batches=2, trajectory=1.0, events="all")
     motion = run(model, InitialState("start", tuple(start), (0.1,) * model.blocks), settings)
@@ -66,6 +66,6 @@ def test_jumps_are_those_of_the_simulated_motion(name: str, law: str, contact: s
 
 def test_a_first_stop_has_no_known_direction() -> None:
     stops, starts = event_jumps(
-        Model(Chain(1), law_of("linearized", 0.1)), *np.zeros((2, 1, 1)), np.array([1]), np.array([True])
+        Model("linearized", a=0.1, blocks=1), *np.zeros((2, 1, 1)), np.array([1]), np.array([True])
     )
     assert len(stops) == len(starts) == 0

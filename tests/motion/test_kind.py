@@ -5,7 +5,7 @@ from dataclasses import astuple, replace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, Model, MotionKind, law_of, simulate
+from burridge_knopoff import ChainState, Model, MotionKind, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.classification import Classifier
 from burridge_knopoff.motion.kind import Motion, format_motion, motion_of_completed_run, motion_of_run
@@ -322,7 +322,7 @@ def test_weak_chaos_next_to_an_unstable_orbit_is_not_periodic(away):
 
 def test_weak_chaos_is_not_regular_if_its_exponent_says_otherwise():
     """The first run stays within 1e-5 of an orbit with multiplier 1.11 over a period of 149; others pass as a torus."""
-    model = Model(Chain(3), law_of("linearized", 0.1325))
+    model = Model("linearized", a=0.1325)
     start = model.begin(PAPER_STATES["minus"])
     generator = np.random.default_rng(1)
     shifts = [1e-11 * np.array([1.0, -0.3, 0.4]), *1e-10 * generator.normal(size=(11, 3))]
@@ -337,7 +337,7 @@ def test_weak_chaos_is_not_regular_if_its_exponent_says_otherwise():
 
 def test_stable_uniform_sliding_is_not_periodic_motion():
     """Friction increases with speed there; the crossings of W = 0 are rounding errors."""
-    model = Model(Chain(3), law_of("stribeck", 0.3), 0.5)
+    model = Model("stribeck", a=0.3, v=0.5)
     run = simulate(model, initial="plus", transient=2000.0, window=2000.0)
     assert run.lyapunov_exponent[0] < -0.01
     motion = motion_of_run(vars(run), True, MOTION)
@@ -348,6 +348,6 @@ def test_stable_uniform_sliding_is_not_periodic_motion():
 def test_motion_that_repeats_without_section_points_is_periodic():
     """Of two blocks W stays above 0, and the orbit belongs to a family, so that the second exponent is 0."""
     start = {"position": [0.5, -1.0], "velocity": [0.05, 0.05]}
-    run = simulate(Model(Chain(2), law_of("nonlinear", 3.0), 0.05), initial=start, transient=2000.0, window=2000.0)
+    run = simulate(Model("nonlinear", a=3.0, blocks=2, v=0.05), initial=start, transient=2000.0, window=2000.0)
     assert not len(run.crossing_time)
     assert motion_of_run(vars(run), True, MOTION).kind == MotionKind.PERIODIC

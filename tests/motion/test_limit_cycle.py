@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, OrbitError, law_of, multipliers
+from burridge_knopoff import Model, OrbitError, multipliers
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.motion import limit_cycle as module
@@ -18,7 +18,7 @@ from burridge_knopoff.running.runner import Runner
     ("initial", "a", "symmetry"), [("minus", 0.08, Symmetry.SYNCHRONIZED), ("plus", 0.08, Symmetry.SYMMETRIC)]
 )
 def test_a_state_returns_after_the_stated_time(initial, a, symmetry):
-    model = Model(Chain(3), law_of("linearized", a))
+    model = Model("linearized", a=a)
     runner = Runner(model, keep_events=True, events_from=5000.0)
     runner.begin(model.begin(PAPER_STATES[initial]))
     runner.run(5500.0)
@@ -39,9 +39,7 @@ def test_the_first_of_equally_close_states_is_the_return(v, mirrored):
     stops = [(0.0, 1, state), (0.05, 3, image), (0.5, 3, image + 0.5), (1.0, 1, state + 0.5)]
     stops += [(1.1, 3, image + 1.5e-7), (2.0, 1, state), (3.0, 1, state)]
     values = np.array([[block, 0, *at] for _, block, at in stops])
-    candidates = list(
-        _close_returns(Model(Chain(3), law_of("linearized", 0.08), v), np.array([time for time, *_ in stops]), values)
-    )
+    candidates = list(_close_returns(Model("linearized", a=0.08, v=v), np.array([time for time, *_ in stops]), values))
     assert [time for _, time, *_ in candidates] == [2.0, *mirrored]
     kinds = {2.0: Symmetry.ASYMMETRIC, 1.1: Symmetry.SYMMETRIC}
     assert [symmetry for *_, symmetry, _ in candidates] == [kinds[time] for _, time, *_ in candidates]
@@ -50,7 +48,7 @@ def test_the_first_of_equally_close_states_is_the_return(v, mirrored):
 
 def test_a_distant_orbit_is_not_the_orbit_of_a_motion(monkeypatch):
     """Newton's method may converge to any orbit, here to synchrony from motion in opposite phases."""
-    model = Model(Chain(3), law_of("linearized", 0.08))
+    model = Model("linearized", a=0.08)
     elsewhere = limit_cycle(model, synchronized_orbit(model).reference)
     monkeypatch.setattr(module, "find_periodic_orbit", lambda *_: elsewhere)
     with pytest.raises(OrbitError, match="no periodic orbit"):
@@ -70,7 +68,7 @@ def test_chaos_lies_on_none_of_the_orbits_that_it_passes_by(blocks, law, a, posi
         return passed[-1]
 
     monkeypatch.setattr(module, "find_periodic_orbit", find)
-    model = Model(Chain(blocks), law_of(law, a))
+    model = Model(law, a=a, blocks=blocks)
     start = ChainState(np.array(position), np.full(blocks, 0.1), np.zeros(blocks, dtype=bool))
     with pytest.raises(OrbitError, match="no periodic orbit"):
         limit_cycle(model, start, settling=2000.0)
@@ -79,7 +77,7 @@ def test_chaos_lies_on_none_of_the_orbits_that_it_passes_by(blocks, law, a, posi
 
 
 def test_an_unstable_orbit_is_that_of_a_motion_that_never_leaves_it():
-    model = Model(Chain(3), law_of("linearized", 0.09))
+    model = Model("linearized", a=0.09)
     orbit = limit_cycle(model, synchronized_orbit(model).reference)
     assert (orbit.symmetry, multipliers(orbit).unstable_count) == (Symmetry.SYNCHRONIZED, 1)
 
@@ -87,7 +85,7 @@ def test_an_unstable_orbit_is_that_of_a_motion_that_never_leaves_it():
 @pytest.mark.parametrize("apart", [0.0, 1e-11, 1e-10, 1e-9, 3e-9, 1e-8])
 def test_synchrony_that_is_not_exact_is_periodic_too(apart):
     """The end blocks stop almost together, which is not a return of one to the other."""
-    model = Model(Chain(3), law_of("linearized", 0.0865))
+    model = Model("linearized", a=0.0865)
     orbit = synchronized_orbit(model)
     start = orbit.reference
     position = start.position + np.array([0.5, 0.0, -0.5]) * apart
@@ -97,6 +95,6 @@ def test_synchrony_that_is_not_exact_is_periodic_too(apart):
 
 
 def test_an_orbit_of_a_long_period_is_found():
-    model = Model(Chain(3), law_of("linearized", 0.0575))
+    model = Model("linearized", a=0.0575)
     orbit = limit_cycle(model, model.begin(PAPER_STATES["plus"]), settling=100_000.0)
     assert orbit.period == pytest.approx(2447.61, abs=0.01)

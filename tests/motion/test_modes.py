@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import eigh
 from scipy.optimize import brentq, minimize
 
-from burridge_knopoff import Chain, ChainState, Model, law_of, limit_cycle, mode_amplitudes, simulate
+from burridge_knopoff import Chain, ChainState, Model, limit_cycle, mode_amplitudes, simulate
 from burridge_knopoff.motion.modes import ModeAmplitudes
 from tests.refused import refused
 
@@ -28,7 +28,7 @@ CHAINS = [
 def free(chain, a=0.0):
     """Return a model, and its modes with the scale of SciPy: frequencies, and shapes in rows."""
     square, columns = eigh(chain.stiffness, np.diag(chain.masses))
-    return Model(chain, law_of("linearized", a)), np.sqrt(square), columns.T
+    return Model("linearized", a=a, chain=chain), np.sqrt(square), columns.T
 
 
 @pytest.mark.parametrize("chain", CHAINS)
@@ -70,7 +70,7 @@ def test_the_energies_of_the_modes_add_up_to_that_of_the_chain(chain, a):
 
 def test_the_lines_of_a_periodic_orbit_are_its_fourier_coefficients():
     """With a mass larger by half the motion at a = 0.06 is periodic; the coefficients are sums over one period."""
-    model = Model(Chain(3), law_of("linearized", 0.06)).at(**{"mass[3]": 1.5})
+    model = Model("linearized", a=0.06).at(**{"mass[3]": 1.5})
     orbit = limit_cycle(model, simulate(model, initial="plus", transient=0.0, window=6000.0).final, settling=3000.0)
     period, count = orbit.period, 20_000
     run = simulate(
@@ -102,7 +102,7 @@ def test_the_lines_of_a_periodic_orbit_are_its_fourier_coefficients():
     ],
 )
 def test_as_a_vanishes_the_amplitudes_are_those_of_the_vertices(position, expected):
-    model = Model(Chain(3), law_of("linearized", 0.001))
+    model = Model("linearized", a=0.001)
     state = ChainState(np.array(position), np.full(3, model.v), np.zeros(3, bool))
     settled = simulate(model, initial=state, transient=0.0, window=20000.0, lyapunov_exponents=0).final
     modes = mode_amplitudes(model, settled, 1000.0)
@@ -116,7 +116,7 @@ def test_as_a_vanishes_the_amplitudes_are_those_of_the_vertices(position, expect
 def test_waves_along_a_ring_are_one_line_whatever_their_phase(blocks, waves):
     """Standing, travelling and between: two modes of one frequency share them, by a phase that means nothing."""
     ring = Chain(blocks, ends="ring", pulling=0.8)
-    model, place = Model(ring, law_of("linearized", 0.0)), 2.0 * np.pi * waves / blocks * np.arange(blocks)
+    model, place = Model("linearized", a=0.0, chain=ring), 2.0 * np.pi * waves / blocks * np.arange(blocks)
     omega = np.sqrt(0.8 + 2.0 - 2.0 * np.cos(place[1]))
     for width in (0.0, 0.7, 1.0):
         for phase in (0.0, 0.4, 1.3):
@@ -197,20 +197,20 @@ def test_the_share_of_a_mode_does_not_decide_at_unequal_amplitudes(moving, expec
 
 
 def test_a_state_or_a_chain_that_does_not_fit_is_refused():
-    model = Model(Chain(3), law_of("linearized", 0.06))
+    model = Model("linearized", a=0.06)
     state = ChainState(np.zeros(3), np.full(3, model.v), np.zeros(3, bool))
     with refused("duration: 0"):
         mode_amplitudes(model, state, 0)
     with refused("state", "4 blocks"):
-        mode_amplitudes(Model(Chain(4), law_of("linearized", 0.06)), state)
-    long = Model(Chain(20_000), law_of("linearized", 0.06))
+        mode_amplitudes(Model("linearized", a=0.06, blocks=4), state)
+    long = Model("linearized", a=0.06, blocks=20_000)
     with refused("model.blocks: 20000"):
         mode_amplitudes(long, (np.zeros(20_000), np.full(20_000, 0.1)))
 
 
 def test_a_line_without_motion_or_beyond_the_sampling_has_no_shares():
     """In uniform sliding every x is 0; states at intervals of Δt resolve frequencies up to 1/(2Δt)."""
-    model = Model(Chain(3), law_of("linearized", 0.06))
+    model = Model("linearized", a=0.06)
     modes = mode_amplitudes(model, ChainState(np.zeros(3), np.full(3, model.v), np.zeros(3, bool)), 50.0)
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -6,13 +6,11 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import (
-    Chain,
     Model,
     MotionKind,
     SearchSettings,
     Settings,
     find_attractors,
-    law_of,
     simulate,
 )
 from burridge_knopoff.model.initial import PAPER_STATES
@@ -28,7 +26,7 @@ ROUND = np.tile(ROWS[:5], (8, 1))
 
 
 def model(threshold=1.0):
-    return Model(Chain(3, threshold=threshold), law_of("linearized", 0.08))
+    return Model("linearized", a=0.08, threshold=threshold)
 
 
 @pytest.mark.parametrize("threshold", [1.0, (1.0, 1.0, 0.9)])
@@ -68,7 +66,7 @@ def test_returns_are_the_stops_of_the_first_block(threshold):
 def test_attractors_whose_end_blocks_never_stop_are_recognized():
     """Of four blocks at a = 0.02 some states reach motion in which only the middle blocks stop."""
     settings = SearchSettings(samples=40)
-    chain = Model(Chain(4), law_of("linearized", 0.02))
+    chain = Model("linearized", a=0.02, blocks=4)
     attractors, labels = find_attractors(chain, settings)
     assert (labels >= 0).all()
     assert {item.motion.block for item in attractors} == {1, 2}

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, Settings, law_of
+from burridge_knopoff import Model, Settings
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion import phase_locking as locking
 from burridge_knopoff.motion.limit_cycle import limit_cycle
@@ -16,7 +16,7 @@ from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.running.simulation import run
 from tests.flows import weakly_repelling
 
-LOCKED = Model(Chain(3), law_of("linearized", 0.0275))
+LOCKED = Model("linearized", a=0.0275)
 #: A state near a torus, whose distance from its periodic orbit falls by the factor e in 30 000 time units.
 ON_IT = state_of(np.array([0.027653, 0.008746, -0.031365, 0.0, 0.201334, 0.12468]))
 
@@ -54,7 +54,7 @@ def test_orbit_of_a_locked_torus_is_where_the_motion_ends():
 
 @pytest.mark.parametrize(("law", "a"), [("linearized", 0.0125), ("linearized", 0.2), ("nonlinear", 0.08)])
 def test_neither_chaos_nor_a_torus_is_locked(law, a):
-    model = Model(Chain(3), law_of(law, a))
+    model = Model(law, a=a)
     start = state_of(np.array([0.5, 0.0, -0.5, 0.0, 0.0, 0.0]))
     times, returns = seen(model, visit(model, start, 20_000.0, 500.0).state(), 12_000.0)
     assert locked_orbit(model, returns, recurrence(times, returns)) is None
@@ -87,7 +87,7 @@ def test_any_coordinate_may_separate_returns():
 
 
 def test_an_orbit_must_exist_attract_and_be_approached():
-    model = Model(Chain(3), law_of("linearized", 0.08))
+    model = Model("linearized", a=0.08)
     stable, unstable = limit_cycle(model, model.begin(PAPER_STATES["plus"]), settling=1000.0), weakly_repelling()
 
     def locked(orbit, away, time, window):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Model
 from burridge_knopoff.figures.rotation import draw
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.rotation import rotation_number
@@ -15,7 +15,7 @@ from burridge_knopoff.summaries.plateaux import Plateau, locked_share, plateaux
 
 
 def from_plus(a, duration):
-    model = Model(Chain(3), law_of("linearized", a))
+    model = Model("linearized", a=a)
     return rotation_number(model, Runner(model).state_after(model.begin(PAPER_STATES["plus"]), 3000.0), duration)
 
 
@@ -36,7 +36,7 @@ def test_half_of_the_time_is_less_accurate_than_the_whole():
 
 def test_motion_that_passes_through_its_centre_has_no_phase():
     """In synchrony the end blocks coincide; in antiphase the middle block slides uniformly."""
-    model = Model(Chain(3), law_of("linearized", 0.08))
+    model = Model("linearized", a=0.08)
     together = Runner(model).state_after(model.begin(PAPER_STATES["minus"]), 9000.0)
     assert np.isnan(rotation_number(model, together, 100.0)).all()
 

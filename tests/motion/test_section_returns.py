@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Chain, Model
 from burridge_knopoff.motion import period
 from burridge_knopoff.motion.period import orbit_length
 from burridge_knopoff.motion.section_returns import has_same_stop_shares, returns_of, state_of
@@ -18,7 +18,7 @@ def test_returns_are_taken_at_the_outermost_block_that_stops(stopping, block, mi
     """Of two blocks equally close to an end the first is taken; mirror images have their returns at mirror blocks."""
     number = np.tile(np.arange(1, 5), 20)
     states = np.random.default_rng(3).uniform(size=(80, 8))
-    chain, stops = Model(Chain(4), law_of("linearized", 0.1)), np.isin(number, stopping)
+    chain, stops = Model("linearized", a=0.1, blocks=4), np.isin(number, stopping)
     number, states = number[stops], states[stops]
     motion = returns_of(chain, 40.0, np.arange(len(number)), number, states.__getitem__)
     mirrored = returns_of(
@@ -43,7 +43,7 @@ def test_eight_returns_show_a_set_and_its_mirror_image(first, last, symmetric, s
     chain = Chain(3, threshold=1.0 if symmetric else (1.0, 1.0, 0.9))
     block = np.array([1] * first + [3] * last)
     states = np.random.default_rng(3).uniform(size=(len(block), 6))
-    motion = returns_of(Model(chain, law_of("linearized", 0.1)), 40.0, np.arange(len(block)), block, states.__getitem__)
+    motion = returns_of(Model("linearized", a=0.1, chain=chain), 40.0, np.arange(len(block)), block, states.__getitem__)
     assert (motion is not None) == seen
 
 

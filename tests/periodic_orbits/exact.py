@@ -20,7 +20,7 @@ def slipping_state(orbit):
 def after_a_period(orbit, position, velocity, a=None):
     """Return the reference run over a period of the orbit; U is relative to the driver at both ends."""
     law = orbit.model.law
-    a = law.a if a is None else a
+    a = law.parameters["a"] if a is None else a
     return reference_run(law.name, a, position, velocity, v=orbit.model.v, end=orbit.period)
 
 

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, Model, Symmetry, law_of
+from burridge_knopoff import Chain, ChainState, Model, Symmetry
 from burridge_knopoff.periodic_orbits import bifurcations
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bifurcations
@@ -52,7 +52,7 @@ def test_a_pair_with_product_1_distinguishes_a_torus_from_a_saddle(values, kind)
 )
 def test_a_short_stick_counts_as_0_at_a_grazing(kind, sticks, shortest):
     """Within 1e-10 of the grazing, a duration that vanishes like a root is shorter than 1e-4."""
-    orbit = SimpleNamespace(model=Model(Chain(3), law_of("linearized", 0.1)))
+    orbit = SimpleNamespace(model=Model("linearized", a=0.1))
     point = SimpleNamespace(orbit=orbit, grazing_distances=SimpleNamespace(stick=np.array(sticks)))
     assert Bifurcation(0.1, 1e-9, kind, point, point, None, is_turning_point=False).stick_time == shortest
 
@@ -96,7 +96,7 @@ def test_an_orbit_grazes_at_the_length_that_is_left(distance, slope, beyond, a, 
 @pytest.mark.parametrize(("away", "kind"), [(0.9e-4, BifurcationKind.PITCHFORK), (1.1e-4, BifurcationKind.FOLD)])
 def test_a_fold_next_to_a_simpler_orbit_is_where_that_one_branches(away, kind):
     """At a distance from the synchronized orbit whose symmetry breaks."""
-    model = MapModel(Chain(2), pitchfork(1.0))
+    model = MapModel(pitchfork(1.0), Chain(2))
     start = ChainState(0.5 * away * np.array([1.0, -1.0]), np.full(2, 0.5), np.zeros(2, dtype=bool))
     point = SimpleNamespace(orbit=orbit_of(model, start, 1.0, Symmetry.ASYMMETRIC))
     assert bifurcations.kind_at(point, (BifurcationKind.FOLD, "symmetry_preserving")) == kind

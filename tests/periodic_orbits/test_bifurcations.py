@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, InitialState, Model, OrbitError, Symmetry, law_of, limit_cycle
+from burridge_knopoff import ChainState, InitialState, Model, OrbitError, Symmetry, limit_cycle
 from burridge_knopoff.periodic_orbits import bifurcations
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bifurcations
@@ -25,14 +25,14 @@ PERIOD_DOUBLING = 0.272317183794
 
 def settled_orbit(a, position=MINUS, law="linearized", velocity=(0.099, 0.1012, 0.1023)):
     """Return the periodic orbit on which a long run of the paper's chain ends."""
-    model = Model(Chain(3), law_of(law, a))
+    model = Model(law, a=a)
     end = Runner(model).state_after(model.begin(InitialState("one", position, velocity)), 10_000.0)
     return limit_cycle(model, end)
 
 
 def at(orbit, a):
     """Return the continuation of an orbit to another a."""
-    return find_periodic_orbit(orbit.model.at(a), orbit.reference, orbit.return_time, orbit.symmetry)
+    return find_periodic_orbit(orbit.model.at(a=a), orbit.reference, orbit.return_time, orbit.symmetry)
 
 
 def segment(orbit, a_range, beyond, settings):
@@ -50,7 +50,7 @@ def six():
 
 def ends_on(orbit, a):
     """Return the stops of the periodic orbit that a run from an orbit reaches at another a; None if it reaches none."""
-    model = orbit.model.at(a)
+    model = orbit.model.at(a=a)
     try:
         return limit_cycle(model, Runner(model).state_after(orbit.reference, 3000.0)).stop_counts
     except OrbitError:
@@ -58,7 +58,7 @@ def ends_on(orbit, a):
 
 
 def test_synchrony_is_lost_in_a_pitchfork(families, law):
-    (bifurcation,) = locate_bifurcations(follow(families[law].at(0.08), (0.01, 0.095), STEPS))
+    (bifurcation,) = locate_bifurcations(follow(families[law].at(0.08), (0.01, 0.095), STEPS, parameter="a"))
     assert bifurcation.kind == BifurcationKind.PITCHFORK
     assert bifurcation.a == pytest.approx(CRITICAL[law], abs=1e-10)
     assert bifurcation.error <= 1e-10
@@ -69,7 +69,7 @@ def test_synchrony_is_lost_in_a_pitchfork(families, law):
 
 def test_an_orbit_is_followed_within_a_range_that_it_lies_in(families, law):
     with refused("a = 0.08", "0.2 to 0.3", error=OrbitError):
-        follow(families[law].at(0.08), (0.2, 0.3))
+        follow(families[law].at(0.08), (0.2, 0.3), parameter="a")
 
 
 @pytest.mark.parametrize(
@@ -85,7 +85,7 @@ def test_stability_on_both_sides_of_a_bifurcation(unstable, loses, keeps):
 def test_the_middle_block_begins_to_stick_at_a_grazing(families, law):
     """The return map has no square root: its derivative jumps, and the duration of the stick grows like a root."""
     for a, upward in ((0.03, True), (0.04, False)):
-        points = follow(families[law].at(a), (0.02, 0.05), STEPS, upward=upward)
+        points = follow(families[law].at(a), (0.02, 0.05), STEPS, upward=upward, parameter="a")
         (bifurcation,) = locate_bifurcations(points)
         assert bifurcation.kind == BifurcationKind.GRAZING
         assert bifurcation.a == pytest.approx(GRAZING[law], abs=1e-9)
@@ -100,7 +100,7 @@ def test_the_middle_block_begins_to_stick_at_a_grazing(families, law):
 
 
 def test_symmetric_motion_doubles_its_period(families):
-    bifurcations = locate_bifurcations(follow(families["linearized"].at(0.26), (0.25, 0.28), STEPS))
+    bifurcations = locate_bifurcations(follow(families["linearized"].at(0.26), (0.25, 0.28), STEPS, parameter="a"))
     bifurcation = next(item for item in bifurcations if item.kind == BifurcationKind.PERIOD_DOUBLING)
     assert bifurcation.a == pytest.approx(PERIOD_DOUBLING, abs=1e-9)
 
@@ -118,7 +118,7 @@ def test_the_asymmetric_orbits_begin_at_the_pitchfork_and_end_at_a_grazing():
 
 def test_a_branch_joins_a_simpler_one_only_nearby():
     """At the root of the test function, an orbit far from any simpler one is at a fold."""
-    (point, *_) = follow(settled_orbit(0.1), (0.09999, 0.10001), STEPS)
+    (point, *_) = follow(settled_orbit(0.1), (0.09999, 0.10001), STEPS, parameter="a")
     assert bifurcations.kind_at(point, (BifurcationKind.FOLD, "symmetry_preserving")) == BifurcationKind.FOLD
 
 
@@ -190,21 +190,21 @@ def test_a_doubled_orbit_ends_at_the_period_doubling_of_the_single_one():
 @pytest.mark.parametrize("law", ["linearized", "nonlinear"])
 def test_a_period_doubling_may_break_the_mirror_symmetry(law):
     """Two synchronized blocks separate so that each does in one period what the other does in the next."""
-    model = Model(Chain(2), law_of(law, 0.05))
+    model = Model(law, a=0.05, blocks=2)
     orbit = limit_cycle(model, model.begin(InitialState("one", (-0.9, -0.9), (0.1, 0.1))), 1000.0)
-    (doubling,) = locate_bifurcations(follow(orbit, (0.045, 0.055)))
+    (doubling,) = locate_bifurcations(follow(orbit, (0.045, 0.055), parameter="a"))
     assert doubling.kind == BifurcationKind.PERIOD_DOUBLING
     start = doubling.at.orbit.reference
     start = ChainState(start.position + np.array([0.002, -0.002]), start.velocity, start.stuck)
-    doubled = find_periodic_orbit(model.at(doubling.a + 2e-4), start, doubling.at.orbit.period, Symmetry.SYMMETRIC)
-    branch = follow(doubled, (0.045, 0.055), upward=False)
+    doubled = find_periodic_orbit(model.at(a=doubling.a + 2e-4), start, doubling.at.orbit.period, Symmetry.SYMMETRIC)
+    branch = follow(doubled, (0.045, 0.055), upward=False, parameter="a")
     assert branch[-1].reduced_orbit.period == pytest.approx(0.5 * doubled.period, rel=1e-3)
     (end,) = locate_bifurcations(branch)
     assert end.kind == BifurcationKind.PERIOD_DOUBLING
     assert end.a == pytest.approx(doubling.a, abs=1e-9)
     # An orbit found without its symmetry is continued in its minimal form.
     plain = find_periodic_orbit(doubled.model, doubled.reference, doubled.period, Symmetry.ASYMMETRIC)
-    again = follow(plain, (0.045, 0.055), upward=False)
+    again = follow(plain, (0.045, 0.055), upward=False, parameter="a")
     assert [bifurcation.kind for bifurcation in locate_bifurcations(again)] == [BifurcationKind.PERIOD_DOUBLING]
     assert again[0].orbit.symmetry == Symmetry.SYMMETRIC
 
@@ -227,6 +227,6 @@ def test_a_torus_branches_off_where_perturbations_stop_decaying():
 def test_a_branch_ends_where_friction_drops_and_an_orbit_grazes():
     """Even the shortest stick ends with a jump, so that the branch ends at the grazing."""
     orbit = settled_orbit(0.05, law="carlson_langer")
-    points = follow(orbit, (0.01, 0.06), STEPS, upward=False)
+    points = follow(orbit, (0.01, 0.06), STEPS, upward=False, parameter="a")
     assert 0.02 < points[-1].orbit.a < 0.05
     assert not list(locate_bifurcations(points))[:-1]

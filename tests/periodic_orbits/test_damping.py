@@ -14,7 +14,6 @@ from burridge_knopoff import (
     Model,
     find_periodic_orbit,
     follow,
-    law_of,
     limit_cycle,
     locate_bifurcations,
     multipliers,
@@ -32,11 +31,11 @@ CRITICAL = 0.0869729046660773
 
 
 def test_dashpots_to_the_driver_shift_the_loss_of_synchrony():
-    damped = Model(Chain(3, pulling_damping=GAMMA), law_of("linearized", 0.08 + GAMMA))
-    orbit, other = (synchronized_orbit(model) for model in (damped, Model(Chain(3), law_of("linearized", 0.08))))
+    damped = Model("linearized", a=0.08 + GAMMA, pulling_damping=GAMMA)
+    orbit, other = (synchronized_orbit(model) for model in (damped, Model("linearized", a=0.08)))
     assert orbit.period == pytest.approx(other.period, rel=1e-13)
     assert np.allclose(multipliers(orbit).whole[:2], multipliers(other).whole[:2], rtol=1e-12)
-    (bifurcation,) = locate_bifurcations(follow(orbit, (0.07 + GAMMA, 0.1 + GAMMA)))
+    (bifurcation,) = locate_bifurcations(follow(orbit, (0.07 + GAMMA, 0.1 + GAMMA), parameter="a"))
     assert bifurcation.kind == BifurcationKind.PITCHFORK
     assert bifurcation.a == pytest.approx(CRITICAL + GAMMA, abs=1e-11)
 
@@ -44,7 +43,7 @@ def test_dashpots_to_the_driver_shift_the_loss_of_synchrony():
 @pytest.fixture(scope="module")
 def orbit():
     """Return an asymmetric orbit of a chain with unequal dashpots."""
-    model = Model(Chain(3, damping=(0.05, 0.02), pulling_damping=(0.0, 0.01, 0.02)), law_of("nonlinear", 0.12))
+    model = Model("nonlinear", a=0.12, damping=(0.05, 0.02), pulling_damping=(0.0, 0.01, 0.02))
     return limit_cycle(model, model.begin(PAPER_STATES["plus"]), settling=3000.0)
 
 
@@ -65,7 +64,7 @@ def test_multipliers_are_those_of_differences(orbit):
 
 
 def test_an_orbit_is_followed_to_other_dashpots():
-    model = Model(Chain(3, damping=0.03), law_of("nonlinear", 0.08))
+    model = Model("nonlinear", a=0.08, damping=0.03)
     start = synchronized_orbit(model)
     branch = follow(start, (0.01, 0.03), parameter="damping", upward=False)
     reached = branch[-1].orbit
@@ -77,7 +76,7 @@ def test_an_orbit_is_followed_to_other_dashpots():
 @pytest.mark.parametrize("start", [0.0, 1e-9, 1e-4, 2e-3])
 def test_dashpots_grow_from_0_as_a_falls(start):
     """The orbit at γ is that at a − γ without dashpots: loss of synchrony, and a branch that turns at a grazing."""
-    synchronized = synchronized_orbit(Model(Chain(3, pulling_damping=start), law_of("linearized", CRITICAL + 0.0075)))
+    synchronized = synchronized_orbit(Model("linearized", a=CRITICAL + 0.0075, pulling_damping=start))
     branch = follow(synchronized, (0.0, 0.02), parameter="pulling_damping")
     assert branch[0].value == start
     assert branch[-1].value > 0.02
@@ -85,21 +84,21 @@ def test_dashpots_grow_from_0_as_a_falls(start):
     (bifurcation,) = locate_bifurcations(branch)
     assert (bifurcation.kind, bifurcation.at.value) == (BifurcationKind.PITCHFORK, pytest.approx(0.0075, abs=2e-11))
     for point in branch[::10]:
-        plain = synchronized_orbit(Model(Chain(3), law_of("linearized", CRITICAL + 0.0075 - point.value)))
+        plain = synchronized_orbit(Model("linearized", a=CRITICAL + 0.0075 - point.value))
         assert point.orbit.period == pytest.approx(plain.period, rel=1e-11)
 
 
 @pytest.fixture(scope="module")
 def plain():
     """Return the orbit of (20, 54, 20) stops that the paper's second state reaches at a = 0.08."""
-    model = Model(Chain(3), law_of("linearized", 0.08))
+    model = Model("linearized", a=0.08)
     return limit_cycle(model, model.begin(PAPER_STATES["plus"]), settling=1000.0)
 
 
 def test_a_branch_that_turns_back_to_0_is_that_along_a(plain):
     """Without dashpots it begins and ends, on either side of the grazing at which it turns."""
     branch = follow(plain, (0.0, 0.2), parameter="pulling_damping")
-    along_a = follow(plain, (0.07, 0.08), upward=False)
+    along_a = follow(plain, (0.07, 0.08), upward=False, parameter="a")
     turns = [next(point.value for point in points if point.is_grazing) for points in (branch, along_a)]
     assert turns[0] == pytest.approx(0.08 - turns[1], abs=1e-9)
     assert branch[-1].value < 1e-9
@@ -112,7 +111,7 @@ def test_a_branch_that_turns_back_to_0_is_that_along_a(plain):
 @pytest.mark.parametrize("parameter", ["damping", "damping[1]", "pulling_damping[2]", "pulling[2]"])
 def test_a_parameter_grows_from_0(parameter):
     """Motion settles on the orbits of the branch. Steps were once a share of the parameter, or failed at 0."""
-    start = synchronized_orbit(Model(Chain(3), law_of("linearized", 0.05)).at(**{parameter: 0.0}))
+    start = synchronized_orbit(Model("linearized", a=0.05).at(**{parameter: 0.0}))
     branch = follow(start, (0.0, 0.02), parameter=parameter)
     assert branch[0].value == 0.0
     assert branch[-1].value > 0.02
@@ -124,7 +123,7 @@ def test_a_parameter_grows_from_0(parameter):
 def test_derivatives_along_the_motion():
     """Force, acceleration and their rates, with a stuck block among slipping ones."""
     chain = Chain(4, damping=0.3, pulling_damping=0.1, mass=(1.0, 2.0, 1.0, 1.0), weakening=(1.0, 1.0, -0.2, 0.5))
-    model = Model(chain, law_of("nonlinear", 0.3), 0.2)
+    model = Model("nonlinear", a=0.3, chain=chain, v=0.2)
     stuck = np.array([False, True, False, False])
     position, velocity = np.array([0.1, -0.2, 0.05, 0.2]), np.array([0.3, 0.0, 0.2, 0.1])
     force, force_rate, acceleration, jerk = (

@@ -5,14 +5,12 @@ import pytest
 
 from burridge_knopoff import (
     BifurcationKind,
-    Chain,
     ChainState,
     Model,
     Symmetry,
     block_frequencies,
     follow,
     follow_bifurcation,
-    law_of,
     limit_cycle,
     locate_bifurcations,
     simulate,
@@ -23,7 +21,7 @@ from tests.refused import refused
 from tests.scipy_flow import model_events
 
 WIDE = ContinuationSettings(first_step=1e-3, largest_step=1e-2)
-MODEL = Model(Chain(3), law_of("linearized", 0.06))
+MODEL = Model("linearized", a=0.06)
 
 
 def end_of_synchrony(parameter, upward=True, model=MODEL):
@@ -105,7 +103,7 @@ def test_mean_frequencies_stay_equal_beyond_the_tongue_of_synchrony(grazing):
 @pytest.mark.slow
 def test_a_fold_in_the_mass_of_one_end_begins_at_the_pitchfork():
     """Above a_c two asymmetric orbits attract; that of the heavier leader ends at a fold, which is a cusp at a_c."""
-    model = Model(Chain(3), law_of("linearized", 0.09))
+    model = Model("linearized", a=0.09)
     orbit = synchronized_orbit(model)
     pushed = orbit.reference.position + np.array([1e-3, 0.0, -1e-3])
     start = ChainState(pushed, orbit.reference.velocity, orbit.reference.stuck)
@@ -131,6 +129,6 @@ def test_a_fold_in_the_mass_of_one_end_begins_at_the_pitchfork():
 
 
 def test_a_pitchfork_is_not_followed_without_symmetry():
-    (pitchfork,) = locate_bifurcations(follow(synchronized_orbit(MODEL.at(0.0865)), (0.0865, 0.0875)))
+    (pitchfork,) = locate_bifurcations(follow(synchronized_orbit(MODEL.at(a=0.0865)), (0.0865, 0.0875), parameter="a"))
     with refused("parameters", "mirror"):
         follow_bifurcation(pitchfork, ("a", "mass[3]"))

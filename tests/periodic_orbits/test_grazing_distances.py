@@ -54,7 +54,7 @@ def sample_orbit(orbit, count=200_000):
 @pytest.fixture(scope="module")
 def six():
     """The orbit on which the end blocks stop six and three times, at a = 0.12."""
-    model = Model(Chain(3), law_of("linearized", 0.12))
+    model = Model("linearized", a=0.12)
     start = ChainState(np.array([0.011, 0.007, 0.009]), np.array([0.099, 0.1012, 0.1023]), np.zeros(3, dtype=bool))
     orbit = limit_cycle(model, start, settling=10_000.0)
     assert sorted(orbit.stop_counts) == [3, 6, 6]
@@ -83,7 +83,7 @@ def test_grazing_distances_agree_with_dense_samples(six):
 
 def test_half_of_a_symmetric_orbit_gives_all_grazing_distances():
     """The grazing distances of the whole orbit, treated as an asymmetric one."""
-    model = Model(Chain(3), law_of("linearized", 0.08))
+    model = Model("linearized", a=0.08)
     half = limit_cycle(
         model, model.begin(simulate(model, initial="plus", transient=0, window=10).initial), settling=1000.0
     )
@@ -108,7 +108,7 @@ def test_grazing_distances_scale_with_the_units(six):
     """With springs 900 times as stiff, all times and velocities are divided by thirty."""
     chain, start = six.model.chain, six.reference
     stiff = Chain(3, coupling=900.0 * chain.coupling, pulling=tuple(900.0 * chain.driving))
-    model = Model(stiff, law_of("linearized", 30.0 * six.a), six.model.v / 30.0)
+    model = Model("linearized", a=30.0 * six.a, chain=stiff, v=six.model.v / 30.0)
     moved = ChainState(start.position / 900.0, start.velocity / 30.0, start.stuck)
     distances = grazing_distances(find_periodic_orbit(model, moved, six.return_time / 30.0, six.symmetry))
     expected = grazing_distances(six)
@@ -129,7 +129,7 @@ BACKWARD = ChainState(np.array([1.7, 0.4, 0.3]), np.array([-0.6, 0.3, 0.0]), np.
 @pytest.mark.parametrize("law", ["linearized", "nonlinear", "stribeck"])
 def test_friction_pushes_a_block_forward_that_slips_backward(law):
     """Compare with finite differences of the motion in the kernel."""
-    model = Model(Chain(3, threshold=(1.0, 1.2, 1.0)), law_of(law, 0.2), contact="symmetric")
+    model = Model(law, a=0.2, threshold=(1.0, 1.2, 1.0), contact="symmetric")
     step = 1e-4
     later, runner = [], Runner(model)
     for count in range(3):
@@ -146,14 +146,14 @@ def test_friction_pushes_a_block_forward_that_slips_backward(law):
 @pytest.fixture(scope="module")
 def dropping():
     """The orbit on which the end blocks stop seven and four times, where friction drops at the start of a slip."""
-    model = Model(Chain(3), law_of("carlson_langer", 0.15))
+    model = Model("carlson_langer", a=0.15)
     start = ChainState(np.array([0.74, -0.17, -0.87]) - model.sliding_offset, np.full(3, 0.1), np.zeros(3, dtype=bool))
     return limit_cycle(model, start, settling=10_000.0)
 
 
 def two_blocks(contact, state):
     """Return the orbit of two blocks that a state reaches if friction drops by a fifth."""
-    model = Model(Chain(2), law_of("carlson_langer", 3.0, {"sigma": 0.2}), contact=contact)
+    model = Model("carlson_langer", a=3.0, sigma=0.2, blocks=2, contact=contact)
     return limit_cycle(model, ChainState(*map(np.array, state), np.zeros(2, dtype=bool)), settling=3000.0, window=500.0)
 
 
@@ -190,7 +190,7 @@ def test_a_reversal_is_not_a_short_stick():
 def test_a_deceleration_grows_with_the_threshold(dropping):
     """With thresholds three times as high and a third of a, lengths, velocities and forces are tripled."""
     law, start = dropping.model.law, dropping.reference
-    model = Model(Chain(3, threshold=3.0), law.at(law.a / 3.0), 3.0 * dropping.model.v)
+    model = Model(law.at(a=law.parameters["a"] / 3.0), threshold=3.0, v=3.0 * dropping.model.v)
     moved = ChainState(3.0 * start.position, 3.0 * start.velocity, start.stuck)
     deceleration = grazing_distances(
         find_periodic_orbit(model, moved, dropping.return_time, dropping.symmetry)
@@ -201,16 +201,16 @@ def test_a_deceleration_grows_with_the_threshold(dropping):
 @pytest.mark.parametrize(
     ("law", "expected"),
     [
-        (law_of("linearized", 0.1), False),
+        (law_of("linearized", a=0.1), False),
         # The friction at rest rounds to the double below 1.
-        (FormulaLaw(0.1, "0.7 + 0.2 + 0.1*exp(-a*u)"), False),
-        (FormulaLaw(0.1, "0.7 + 0.2 + 0.099999*exp(-a*u)"), True),
-        (law_of("carlson_langer", 0.1), True),
+        (FormulaLaw("0.7 + 0.2 + 0.1*exp(-a*u)", a=0.1), False),
+        (FormulaLaw("0.7 + 0.2 + 0.099999*exp(-a*u)", a=0.1), True),
+        (law_of("carlson_langer", a=0.1), True),
     ],
 )
 def test_rounding_is_not_a_drop_of_friction(law, expected):
     assert float(law(0.0)) < 1.0 or law.name == "linearized"
-    assert has_friction_drop(Model(Chain(3), law)) is expected
+    assert has_friction_drop(Model(law)) is expected
 
 
 def peaks(values, among):
@@ -231,7 +231,7 @@ def peaks(values, among):
 def test_motion_with_backward_slip_or_pull_has_grazing_distances(threshold, position, velocity, stuck):
     """Any motion has grazing distances, as an orbit does."""
     chain = Chain(len(threshold), threshold=threshold)
-    model = Model(chain, law_of("linearized", 0.2), contact="symmetric")
+    model = Model("linearized", a=0.2, chain=chain, contact="symmetric")
     motion = orbit_of(model, ChainState(*map(np.array, (position, velocity, stuck))), 6.0, Symmetry.ASYMMETRIC)
     at, rate, still = sample_orbit(motion, 3000)
     force = chain.thresholds * float(model.law(model.v)) - at @ chain.stiffness.T

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, law_of, limit_cycle, synchronized_orbit
+from burridge_knopoff import InitialState, Model, limit_cycle, synchronized_orbit
 from burridge_knopoff.periodic_orbits import known_orbits as orbits_over_a
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits, nearby_orbit
@@ -14,13 +14,13 @@ from tests.normal_forms import CRITICAL, on_line, orbit_at
 
 @pytest.fixture
 def branch():
-    return KnownOrbits(synchronized_orbit(Model(Chain(3), law_of("linearized", 0.05))))
+    return KnownOrbits(synchronized_orbit(Model("linearized", a=0.05)))
 
 
 @pytest.fixture(scope="module")
 def asymmetric():
     """An orbit whose end blocks stop six and three times, at a = 0.12."""
-    model = Model(Chain(3), law_of("linearized", 0.12))
+    model = Model("linearized", a=0.12)
     start = model.begin(InitialState("one", (-0.989, -0.993, -0.991), (0.099, 0.1012, 0.1023)))
     return limit_cycle(model, start, settling=10_000.0)
 
@@ -34,7 +34,7 @@ def distant(slope, a):
 def test_steps_are_halved_until_the_orbit_is_found():
     """From 0.02 to 0.0025, which is kept."""
     orbits = distant(150.0, 0.05)
-    assert orbits.at(0.07).model.a == 0.07
+    assert orbits.at(0.07).model.parameter("a") == 0.07
     assert sorted(orbits.orbits) == pytest.approx(np.arange(0.05, 0.0701, 0.0025))
 
 
@@ -54,7 +54,7 @@ def test_a_lost_orbit_is_an_error_after_the_smallest_step(asymmetric):
 
 def test_steps_become_shorter_near_0():
     """There a stick may vanish with a, and with it the range of convergence of Newton's method."""
-    assert distant(1.5e6, 1e-4).at(0.99e-4).model.a == 0.99e-4
+    assert distant(1.5e6, 1e-4).at(0.99e-4).model.parameter("a") == 0.99e-4
 
 
 def test_an_orbit_of_another_period_is_not_on_the_branch(branch):

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff import Chain, ChainState, Model
 from burridge_knopoff.periodic_orbits.flow import rate
 from burridge_knopoff.periodic_orbits.grazing_distances import _derivatives
 
-LIGHT = Model(Chain(3, coupling=2.0, threshold=(1.0, 1.5, 0.7)), law_of("nonlinear", 0.3), 0.2)
-HEAVY = Model(Chain(3, coupling=2.0, threshold=(1.0, 1.5, 0.7), mass=(1.0, 4.0, 0.5)), LIGHT.law, 0.2)
+LIGHT = Model("nonlinear", a=0.3, coupling=2.0, threshold=(1.0, 1.5, 0.7), v=0.2)
+HEAVY = Model(LIGHT.law, coupling=2.0, threshold=(1.0, 1.5, 0.7), mass=(1.0, 4.0, 0.5), v=0.2)
 SLIPPING = np.zeros((1, 3), dtype=bool)
 POSITION, VELOCITY = np.array([0.1, -0.2, 0.05]), np.array([0.3, 0.1, 0.2])
 

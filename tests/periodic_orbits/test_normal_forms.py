@@ -215,7 +215,7 @@ def test_a_branch_turns_at_the_end_of_the_range_of_the_law():
         exists=lambda mu: mu >= -CRITICAL,
     )
     orbit = orbit_at(form, 0.01 - CRITICAL, 0.02)
-    branch = follow(orbit, (0.0, 0.0101), STEPS, upward=False)
+    branch = follow(orbit, (0.0, 0.0101), STEPS, upward=False, parameter="a")
     x = np.array([point.orbit.reference.position[0] for point in branch])
     assert np.abs(x) == pytest.approx([2.0 * point.value for point in branch], abs=1e-10)
     assert x.min() < -0.02 < 0.02 == x.max()
@@ -246,7 +246,7 @@ def test_a_fold_close_to_a_simpler_orbit_is_passed():
     )
     d = 0.014
     orbit = orbit_at(form, -(d**2) + 5000.0 * d**4, [d, -d], chain=PAIR)
-    branch = follow(orbit, (CRITICAL - 0.01, CRITICAL + 0.01), upward=False)
+    branch = follow(orbit, (CRITICAL - 0.01, CRITICAL + 0.01), upward=False, parameter="a")
     fold, end = locate_bifurcations(branch)
     assert (fold.kind, fold.is_turning_point) == (BifurcationKind.FOLD, True)
     assert fold.value == pytest.approx(CRITICAL - 5e-5, abs=1e-10)
@@ -265,7 +265,7 @@ def test_doubled_orbits_between_two_period_doublings(upward):
         lambda x, mu: -(1.0 + excess(mu)) * x + x**3, lambda x, mu: -(1.0 + excess(mu)) + 3.0 * x**2
     )
     orbit = orbit_at(form, 0.01, 0.01, time=2)
-    branch = follow(orbit, (0.09, 0.13), STEPS, upward=upward)
+    branch = follow(orbit, (0.09, 0.13), STEPS, upward=upward, parameter="a")
     mu, x, _ = leading(branch[:-1])
     assert x**2 == pytest.approx(excess(mu), abs=1e-10)
     (bifurcation,) = locate_bifurcations(branch)

@@ -11,7 +11,6 @@ from scipy.interpolate import CubicSpline
 
 from burridge_knopoff import (
     BifurcationKind,
-    Chain,
     ChainState,
     ContinuationSettings,
     FormulaLaw,
@@ -19,7 +18,6 @@ from burridge_knopoff import (
     Model,
     follow,
     follow_bifurcation,
-    law_of,
     limit_cycle,
     locate_bifurcations,
     multipliers,
@@ -34,7 +32,7 @@ from tests.refused import refused
 
 #: a_c of the paper's chain, from interval arithmetic.
 CRITICAL = 0.0869729046660773
-MODEL = Model(Chain(3), law_of("linearized", 0.0865))
+MODEL = Model("linearized", a=0.0865)
 
 #: For each parameter of the chain: an interval, and the invariant along a curve under the linearized law.
 SCALED = {
@@ -49,7 +47,9 @@ SCALED = {
 def bifurcation_near(orbit, a, reach=2e-3):
     """Return the bifurcation at an a, on the branch of a nearby orbit."""
     for upward in (True, False):
-        branch = follow(orbit, (a - reach, a + reach), upward=upward, is_complete=lambda points: len(points) > 60)
+        branch = follow(
+            orbit, (a - reach, a + reach), upward=upward, is_complete=lambda points: len(points) > 60, parameter="a"
+        )
         for bifurcation in locate_bifurcations(branch):
             if abs(bifurcation.a - a) < 1e-8:
                 return bifurcation
@@ -59,7 +59,7 @@ def bifurcation_near(orbit, a, reach=2e-3):
 @pytest.fixture(scope="module")
 def seven_stops():
     """Return an orbit with (4, 7, 7) stops, which begins at a grazing that is a turning point and ends at a fold."""
-    model = MODEL.at(0.145)
+    model = MODEL.at(a=0.145)
     position = np.array([0.1, -0.2, -0.4]) - model.sliding_offset
     start = ChainState(position, np.full(3, 0.1), np.zeros(3, dtype=bool))
     orbit = limit_cycle(model, start, settling=3000.0)
@@ -97,7 +97,9 @@ def test_curves_with_orbits_on_one_side_only(seven_stops, parameter, kind, a, ac
     orbit = (
         seven_stops
         if kind == "FOLD"
-        else find_periodic_orbit(MODEL.at(0.1375), seven_stops.reference, seven_stops.return_time, seven_stops.symmetry)
+        else find_periodic_orbit(
+            MODEL.at(a=0.1375), seven_stops.reference, seven_stops.return_time, seven_stops.symmetry
+        )
     )
     check_curve(bifurcation_near(orbit, a, 1e-2), kind, parameter, a, accuracy)
 
@@ -138,7 +140,7 @@ def test_curves_begin_at_0(parameter, first):
 def test_steps_in_a_weak_coupling_do_not_depend_on_it():
     """Two blocks that move alike do so at any coupling."""
     for coupling in (1e-6, 1e-3):
-        model = Model(Chain(2, coupling=coupling, pulling=1.0), law_of("linearized", 0.3))
+        model = Model("linearized", a=0.3, blocks=2, coupling=coupling, pulling=1.0)
         orbit = limit_cycle(model, model.begin(InitialState("alike", (-0.9, -0.9), (0.1, 0.1))), settling=200.0)
         branch = follow(orbit, (0.0, 0.02), parameter="coupling")
         assert (branch[-1].value > 0.02, len(branch) < 60) == (True, True)
@@ -147,15 +149,15 @@ def test_steps_in_a_weak_coupling_do_not_depend_on_it():
 
 def test_a_parameter_of_a_law_passes_through_0():
     """The law 1 − (a − b)u, and a parameter with a default of its own."""
-    law = FormulaLaw(0.09, "1 - a*u + b*u", b=-1e-4)
-    branch = follow(synchronized_orbit(Model(Chain(3), law)), (-0.01, 0.01), parameter="b")
+    law = FormulaLaw("1 - a*u + b*u", a=0.09, b=-1e-4)
+    branch = follow(synchronized_orbit(Model(law)), (-0.01, 0.01), parameter="b")
     assert (branch[0].value, branch[-1].value > 0.01, len(branch) < 40) == (-1e-4, True, True)
     (bifurcation,) = locate_bifurcations(branch)
     assert (bifurcation.kind, bifurcation.value) == (
         BifurcationKind.PITCHFORK,
         pytest.approx(0.09 - CRITICAL, abs=2e-11),
     )
-    stribeck = Model(Chain(3), law_of("stribeck", 0.05, {"eta": 0.0}))
+    stribeck = Model("stribeck", a=0.05, eta=0.0)
     branch = follow(synchronized_orbit(stribeck), (0.0, 0.02), parameter="eta")
     assert branch[-1].value > 0.02
     again = synchronized_orbit(branch[-1].orbit.model)
@@ -185,7 +187,7 @@ def test_under_another_law_positions_depend_on_two_numbers(families):
     pitchfork = bifurcation_near(near(families["nonlinear"], 0.0887), 0.0887172229711765)
     curve = follow_bifurcation(pitchfork, ("a", "threshold"), (0.9, 1.1))
     for a, threshold in curve.values[:: len(curve.values) - 1]:
-        model = Model(Chain(3), law_of("nonlinear", 0.0), v=0.1 / threshold)
+        model = Model("nonlinear", a=0.0, v=0.1 / threshold)
         assert a * threshold == pytest.approx(critical_a(bifurcations_of(synchronized_orbits(model))), abs=1e-10)
 
 
@@ -221,11 +223,11 @@ def test_the_curve_of_synchrony_in_a_and_coupling(families):
 
 def test_a_long_orbit_meets_the_same_grazings_along_the_threshold():
     """An orbit of period 157, between two grazings that are turning points."""
-    model = MODEL.at(0.0813)
+    model = MODEL.at(a=0.0813)
     orbit = limit_cycle(model, simulate(model, initial="plus", transient=0, window=1000).final)
     assert orbit.period > 157.0
     few = ContinuationSettings(max_orbits=40)
-    along_a = next(locate_bifurcations(follow(orbit, settings=few)))
+    along_a = next(locate_bifurcations(follow(orbit, settings=few, parameter="a")))
     branch = follow(orbit, settings=few, parameter="threshold")
     assert all(abs(point.orbit.period - orbit.period) < 0.1 for point in branch)
     bifurcation = next(locate_bifurcations(branch))
@@ -245,7 +247,7 @@ def test_only_the_scale_of_an_orbit_changes_with_v_under_the_linearized_law():
 
 
 def test_a_branch_in_the_coupling_loses_synchrony_where_a_is_critical():
-    orbit = synchronized_orbit(MODEL.at(0.0853))
+    orbit = synchronized_orbit(MODEL.at(a=0.0853))
     branch = follow(orbit, (0.98, 1.02), parameter="coupling", upward=False)
     (pitchfork,) = locate_bifurcations(branch)
     assert (pitchfork.kind, pitchfork.parameter, pitchfork.a) == (BifurcationKind.PITCHFORK, "coupling", 0.0853)
@@ -269,13 +271,13 @@ def test_invalid_planes_are_refused(families, options, words):
     with refused(words):
         follow_bifurcation(pitchfork, **options)
     with refused("mass: (1.0, 1.0, 1.0)"):
-        follow(synchronized_orbit(Model(Chain(3, mass=(1.0, 1.0, 1.0)), MODEL.law)), parameter="mass")
+        follow(synchronized_orbit(Model(MODEL.law, mass=(1.0, 1.0, 1.0))), parameter="mass")
 
 
 def test_the_springs_along_the_columns_of_a_grid():
     """In a single column they are those of a row."""
-    grid = Model(Chain(grid=(1, 3), coupling=(7.0, 1.0)), law_of("linearized", 0.08))
+    grid = Model("linearized", a=0.08, grid=(1, 3), coupling=(7.0, 1.0))
     last = follow(grid, (0.98, 1.0), parameter="coupling[2]", upward=False, initial="minus")[-1]
     assert last.value < 0.985
-    row = Model(Chain(3, coupling=last.value), grid.law)
+    row = Model(grid.law, coupling=last.value)
     assert last.orbit.period == pytest.approx(synchronized_orbit(row).period, abs=1e-9)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, InitialState, Model, OrbitError, Symmetry, law_of, limit_cycle
+from burridge_knopoff import Chain, ChainState, InitialState, Model, OrbitError, Symmetry, limit_cycle
 from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form
 from burridge_knopoff.periodic_orbits.periodic import find_periodic_orbit, refine_orbit
@@ -34,7 +34,7 @@ VELOCITY = {"symmetric": (0.0, 0.101, 0.189)}
 def orbits():
     settled = {}
     for name, (chain, law, a, position, *_) in ORBITS.items():
-        model = Model(chain, law_of(law, a))
+        model = Model(law, a=a, chain=chain)
         velocity = VELOCITY.get(name, tuple(0.1 + 0.001 * k for k in range(chain.blocks)))
         end = Runner(model).state_after(model.begin(InitialState("one", position, velocity)), 20_000.0)
         settled[name] = limit_cycle(model, end)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, OrbitError, Symmetry, law_of, multipliers, simulate
+from burridge_knopoff import InitialState, Model, OrbitError, Symmetry, multipliers, simulate
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.pitchfork import branching_orbit, end_block_asymmetry
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import bifurcations_of, critical_a
@@ -29,7 +29,7 @@ def test_the_branch_is_the_attractor_beyond(families, critical, law):
     position, velocity = slipping_state(families[law].at(a))
     position[0] += 1e-3
     near = InitialState("near", position, velocity)
-    run = simulate(law, a, near, transient=8000.0, window=100 * orbit.period, batches=2)
+    run = simulate(Model(law, a=a), near, transient=8000.0, window=100 * orbit.period, batches=2)
     assert run.mean_distance == pytest.approx(orbit.mean_distance, rel=1e-9)
     # After the last stop of a period both blocks stick, at the distance x_1 − x_3.
     both = run.event_position[:, 0] - run.event_position[:, 2]
@@ -70,7 +70,7 @@ def test_an_asymmetry_beyond_the_branch_is_refused(critical):
 
 def test_a_pitchfork_of_five_blocks():
     """The distance between its orbits also grows as the root of the distance from a_c."""
-    orbits = synchronized_orbits(Model(Chain(5), law_of("linearized", 0.08)))
+    orbits = synchronized_orbits(Model("linearized", a=0.08, blocks=5))
     at = orbits.at(critical_a(bifurcations_of(orbits)))
     offset = [branching_orbit(at, d).a - at.a for d in (5e-4, 1e-3)]
     assert offset[1] / offset[0] == pytest.approx(4.0, rel=1e-3)

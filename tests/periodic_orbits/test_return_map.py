@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, FormulaLaw, Model
+from burridge_knopoff import ChainState, FormulaLaw, Model
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at
 from burridge_knopoff.periodic_orbits.parameter_line import line_along_a
@@ -13,12 +13,12 @@ from tests.normal_forms import CRITICAL, TWO, MapModel, NormalForm, on_line
 from tests.refused import refused
 
 #: The friction at the start of a slip is a, which must not exceed 1.
-LAW = FormulaLaw(1.0, "a/(1 + 0.08*u)", name="own")
+LAW = FormulaLaw("a/(1 + 0.08*u)", name="own", a=1.0)
 
 
 def test_the_derivative_by_a_is_taken_from_the_side_that_the_law_allows():
     def derivative(a):
-        model = Model(Chain(3), LAW.at(a))
+        model = Model(LAW.at(a=a))
         start = model.begin(PAPER_STATES["plus"])
         mapping = ReturnMap(model, Symmetry.ASYMMETRIC)
         end = mapping.end(start, 1.0)
@@ -30,12 +30,12 @@ def test_the_derivative_by_a_is_taken_from_the_side_that_the_law_allows():
 
 def test_there_is_no_orbit_outside_the_range_of_a_law():
     with pytest.raises(OrbitError, match="above 0 and at most 1"):
-        model_at(Model(Chain(3), LAW), 1.001)
+        model_at(Model(LAW), 1.001)
 
 
 def derivative_at(mu, form):
     """Return the derivative of x_1 after an iteration by a, at CRITICAL + μ."""
-    model = MapModel(TWO, form.at(CRITICAL + mu))
+    model = MapModel(form.at(CRITICAL + mu))
     start = ChainState(np.zeros(2), np.full(2, 0.5), np.zeros(2, dtype=bool))
     mapping = ReturnMap(model, Symmetry.ASYMMETRIC)
     end = mapping.end(start, 1.0)

@@ -92,7 +92,7 @@ def test_multipliers_against_finite_differences(families, law, a):
 
 
 def test_a_run_from_the_initial_state_ends_on_the_orbit(families, law):
-    periods = turns(simulate(law, 0.05, "minus", transient=4000.0, window=200.0))
+    periods = turns(simulate(Model(law, a=0.05), "minus", transient=4000.0, window=200.0))
     assert periods == pytest.approx(families[law].at(0.05).period, abs=1e-10)
     assert len(periods) >= 30
 
@@ -102,7 +102,7 @@ def test_small_a_is_a_grazing_normal_mode(families, law):
     omega = np.sqrt(3.0 - np.sqrt(3.0))
     orbits = [families[law].at(a) for a in (1e-4, 1e-6)]
     for orbit in orbits:
-        assert orbit.stick_time(0) == pytest.approx(2.36 * np.sqrt(orbit.model.a), rel=0.005)
+        assert orbit.stick_time(0) == pytest.approx(2.36 * np.sqrt(orbit.model.parameter("a")), rel=0.005)
     first, second = (abs(orbit.period - 2.0 * np.pi / omega) for orbit in orbits)
     assert second < min(1e-7, 0.02 * first)
 
@@ -143,13 +143,13 @@ def test_friction_parameters_without_an_orbit(families, a):
 @pytest.mark.parametrize("chain", [Chain(3, coupling=(1.0, 1.1)), Chain(4, threshold=(1.0, 1.0, 1.0, 0.9))])
 def test_a_chain_that_is_not_its_own_mirror_image_is_refused(chain):
     with pytest.raises(OrbitError, match="mirror"):
-        synchronized_orbit(Model(chain, law_of("linearized", 0.05)))
+        synchronized_orbit(Model("linearized", a=0.05, chain=chain))
 
 
 @pytest.mark.parametrize("blocks", [2, 4, 5])
 def test_chains_of_any_length_have_the_orbit(law, blocks):
     """A slightly displaced state returns or departs as the leading multiplier predicts."""
-    orbit = synchronized_orbit(Model(Chain(blocks), law_of(law, 0.08)))
+    orbit = synchronized_orbit(Model(law, a=0.08, blocks=blocks))
     assert orbit.symmetry == Symmetry.SYNCHRONIZED
     assert orbit.residual <= 1e-14
     spectrum = multipliers(orbit)
@@ -167,16 +167,16 @@ def test_chains_of_any_length_have_the_orbit(law, blocks):
 def test_there_is_no_orbit_outside_the_range_of_a_law():
     """Φ(0) = 1.2 − 3a is above 1, or not above 0, but in between."""
     with pytest.raises(OrbitError, match="at most 1"):
-        synchronized_orbits(Model(Chain(3), FormulaLaw(0.1, "1.2 - 3*a - 0.05*u"))).at(0.05)
+        synchronized_orbits(Model(FormulaLaw("1.2 - 3*a - 0.05*u", a=0.1))).at(0.05)
 
 
-BUILT_IN = [law_of(name, 0.08) for name in ("exponential", "stribeck", "carlson_langer")]
+BUILT_IN = [law_of(name, a=0.08) for name in ("exponential", "stribeck", "carlson_langer")]
 
 
-@pytest.mark.parametrize("law", [*BUILT_IN, FormulaLaw(0.08, "1 - a*c*tanh(u/c)", c=0.5)])
+@pytest.mark.parametrize("law", [*BUILT_IN, FormulaLaw("1 - a*c*tanh(u/c)", a=0.08, c=0.5)])
 def test_runs_end_on_the_orbit_of_any_law(law):
     """Where the multiplier is below 1, runs from slightly asymmetric states synchronize."""
-    model = Model(Chain(3, threshold=(1.0, 0.8, 1.0)), law)
+    model = Model(law, threshold=(1.0, 0.8, 1.0))
     orbit = synchronized_orbit(model)
     assert orbit.residual <= 1e-14
     assert transverse(orbit) == pytest.approx(finite_difference_multiplier(orbit), abs=1e-7)
@@ -197,7 +197,7 @@ def test_exact_synchrony_doubles_its_period_where_a_symmetric_multiplier_passes(
         position, velocity = slipping_state(orbit)
         position[1] += 1e-4
         initial = InitialState("near", position, velocity)
-        run = simulate(law, a, initial, transient=10000.0, window=100.0, batches=2)
+        run = simulate(Model(law, a=a), initial, transient=10000.0, window=100.0, batches=2)
         assert run.mean_distance < 1e-12
         periods = turns(run)
         assert periods[2:] == pytest.approx(periods[:-2], abs=1e-6)
@@ -209,7 +209,7 @@ def test_the_orbit_at_other_couplings_has_one_cycle(coupling, law):
     """A run from rest may end on synchronized motion of several cycles; the orbits with one cycle form one branch."""
     periods = []
     for a in (0.04, 0.05, 0.07, 0.1):
-        orbit = synchronized_orbit(Model(Chain(3, coupling=coupling), law_of(law, a)))
+        orbit = synchronized_orbit(Model(law, a=a, coupling=coupling))
         assert orbit.stop_counts[0] == orbit.stop_counts[2] == 1
         assert orbit.stop_counts[1] <= 1
         assert orbit.residual < 1e-13
@@ -221,13 +221,13 @@ def test_the_orbit_at_other_couplings_has_one_cycle(coupling, law):
 
 def squared(a):
     """Return a model of the tutorial, whose orbit of one turn repels symmetric perturbations."""
-    return Model(Chain(3, coupling=1.5), FormulaLaw(a, "1/(1 + a*u)**2"))
+    return Model(FormulaLaw("1/(1 + a*u)**2", a=a), coupling=1.5)
 
 
-STIFF = Model(Chain(3, coupling=1.5), law_of("linearized", 0.26574379590))
+STIFF = Model("linearized", a=0.26574379590, coupling=1.5)
 #: Models, and the largest modulus of a symmetric multiplier of their synchronized orbits.
 SYMMETRIC = [(squared(0.04), 1.239), (squared(0.1), 1.692), (squared(0.16), 2.412), (STIFF, 2.116)]
-SYMMETRIC += [(Model(Chain(3), law_of("linearized", 0.08)), 0.24)]
+SYMMETRIC += [(Model("linearized", a=0.08), 0.24)]
 
 
 @pytest.mark.parametrize(("model", "modulus"), SYMMETRIC)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff import BifurcationKind, Chain, Model, Symmetry, law_of, multipliers
+from burridge_knopoff import BifurcationKind, Chain, Model, Symmetry, multipliers
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.flow import flow
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
@@ -83,7 +83,7 @@ def test_without_bifurcations_critical_values_are_nan():
 
 def test_grazing_next_to_an_orbit_that_is_not_found():
     """With stiff coupling it lies between values of a at which the multipliers are very different."""
-    orbits = synchronized_orbits(Model(Chain(3, coupling=30.0), law_of("linearized", 0.05)))
+    orbits = synchronized_orbits(Model("linearized", a=0.05, coupling=30.0))
     a = grazing_a(bifurcations_of(orbits), block=1)
     assert 0.025 < a < 0.0375
     assert orbits.at(a - 1e-9).stick_time(1) == 0.0 < orbits.at(a + 1e-9).stick_time(1)
@@ -153,7 +153,7 @@ def test_critical_a_does_not_depend_on_v_under_the_linearized_law(families, crit
 def test_transitions_are_found_on_the_scale_of_the_chain(critical, bifurcations, strength, threshold):
     """Springs stiffer by a factor make all motion faster by its square root; a times the threshold is what matters."""
     springs = {"coupling": strength, "pulling": (strength, 2.0 * strength, strength)}
-    orbits = synchronized_orbits(Model(Chain(3, threshold=threshold, **springs), law_of("linearized", 0.0)))
+    orbits = synchronized_orbits(Model("linearized", a=0.0, blocks=3, threshold=threshold, **springs))
     factor = strength**0.5 / threshold
     assert orbits.model.chain.a_unit == pytest.approx(factor)
     located = bifurcations_of(orbits)
@@ -166,7 +166,7 @@ def test_transitions_are_found_on_the_scale_of_the_chain(critical, bifurcations,
 
 def test_two_blocks_desynchronize_in_a_period_doubling():
     """Each block does in one period what the other does in the next, so that the transverse multiplier is −1."""
-    orbits = synchronized_orbits(Model(Chain(2), law_of("linearized", 0.05)))
+    orbits = synchronized_orbits(Model("linearized", a=0.05, blocks=2))
     located = bifurcations_of(orbits)
     a = critical_a(located)
     assert multipliers(orbits.at(a)).transverse == pytest.approx(-1.0, abs=1e-12)
@@ -179,7 +179,7 @@ def test_a_c_is_that_of_an_orbit_that_attracts_within_synchrony(bifurcations, cr
     large and its orbit attracts them.
     """
     weak, stiff = (
-        bifurcations_of(synchronized_orbits(Model(chain, law_of("linearized", 0.1))))
+        bifurcations_of(synchronized_orbits(Model("linearized", a=0.1, chain=chain)))
         for chain in (Chain(3, threshold=0.2), Chain(3, coupling=1.2))
     )
     assert critical_a(stiff) == pytest.approx(0.19534254, abs=1e-8)
@@ -187,7 +187,7 @@ def test_a_c_is_that_of_an_orbit_that_attracts_within_synchrony(bifurcations, cr
 
 
 def test_five_blocks_desynchronize_where_the_leading_multiplier_is_1():
-    orbits = synchronized_orbits(Model(Chain(5), law_of("linearized", 0.08)))
+    orbits = synchronized_orbits(Model("linearized", a=0.08, blocks=5))
     a = critical_a(bifurcations_of(orbits))
     assert [abs(multipliers(orbits.at(a + side)).transverse) > 1.0 for side in (-1e-6, 1e-6)] == [False, True]
 

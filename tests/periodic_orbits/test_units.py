@@ -11,7 +11,6 @@ from burridge_knopoff import (
     Model,
     follow,
     follow_bifurcation,
-    law_of,
     limit_cycle,
     locate_bifurcations,
     multipliers,
@@ -38,7 +37,7 @@ def paper(time=1.0, length=1.0, a=0.08, law="linearized"):
     """Return the paper's chain in other units of time and length, in which its forces are the same."""
     springs = 1.0 / length
     chain = Chain(3, coupling=springs, pulling=(springs, 2.0 * springs, springs), mass=time * time / length)
-    return Model(chain, law_of(law, a * time / length), v=0.1 * length / time)
+    return Model(law, a=a * time / length, chain=chain, v=0.1 * length / time)
 
 
 def asymmetric_state(model, time, length):
@@ -54,7 +53,7 @@ def branch():
     def followed(time=1.0, length=1.0):
         model = paper(time, length, 0.0865)
         orbit, slope = limit_cycle(model, synchronized_orbit(model).reference), time / length
-        return follow(orbit, (0.086 * slope, 0.0875 * slope))
+        return follow(orbit, (0.086 * slope, 0.0875 * slope), parameter="a")
 
     return followed
 
@@ -85,7 +84,7 @@ def test_the_synchronized_orbit_scales(time, length, law):
 def test_a_chain_a_thousand_times_as_slow_has_its_orbit():
     """Its springs are a thousand times softer and its blocks a thousand times heavier; a run gives the same period."""
     chain = Chain(3, coupling=0.001, pulling=(0.001, 0.002, 0.001), mass=1000.0)
-    orbit = synchronized_orbit(Model(chain, law_of("linearized", 0.08)))
+    orbit = synchronized_orbit(Model("linearized", a=0.08, chain=chain))
     assert orbit.period == pytest.approx(1000.0 * synchronized_orbit(paper()).period, rel=1e-12)
     slow_orbit = limit_cycle(orbit.model, orbit.model.begin(InitialState("own", (-900.0, -1100.0, -900.0), 0.1)), 2e6)
     assert slow_orbit.period == pytest.approx(orbit.period, rel=1e-12)
@@ -98,7 +97,7 @@ def test_a_fast_chain_takes_no_longer(monkeypatch, mass):
     monkeypatch.setattr(Runner, "run", lambda runner, until: times.append(until) or run(runner, until))
     springs = 2.0**18
     chain = Chain(3, coupling=springs, pulling=(springs, 2.0 * springs, springs), mass=mass)
-    orbit = synchronized_orbit(Model(chain, law_of("carlson_langer", 0.5)))
+    orbit = synchronized_orbit(Model("carlson_langer", a=0.5, chain=chain))
     assert 5.0 < orbit.period * math.sqrt(springs / mass) < 7.0
     assert max(times) < 1000.0 * orbit.period
 

@@ -19,7 +19,6 @@ from burridge_knopoff import (
     follow,
     follow_bifurcation,
     hopf_bifurcations,
-    law_of,
     limit_cycle,
     locate_bifurcations,
     multipliers,
@@ -33,8 +32,8 @@ from tests.scipy_flow import model_events
 
 BLOCK = Chain(1, pulling=1)
 #: The friction oscillator of the bSTAB toolbox on a belt of velocity v.
-FRICTION = FormulaLaw(0.08, "mud + (mus - mud)*exp(-u/v0)", mus=1.0, mud=0.5, v0=0.5)
-OSCILLATOR = Model(Chain(1, pulling=1, pulling_damping=0.1), FRICTION, v=1.4, contact="symmetric")
+FRICTION = FormulaLaw("mud + (mus - mud)*exp(-u/v0)", mus=1.0, mud=0.5, v0=0.5)
+OSCILLATOR = Model(FRICTION, blocks=1, pulling=1, pulling_damping=0.1, v=1.4, contact="symmetric")
 #: Where sliding is as stable as not, -dΦ/du = exp(-2v) = 0.1.
 HOPF = 0.5 * math.log(10.0)
 GRAZING = 1.83660097
@@ -42,7 +41,7 @@ GRAZING = 1.83660097
 
 def weakening_then_strengthening(chain, a=0.5, v=0.7, b=0.3):
     """Friction falls up to a speed of √(a/3b), 0.745, and grows beyond."""
-    return Model(chain, FormulaLaw(a, "1 - a*u + b*u**3", b=b), v)
+    return Model(FormulaLaw("1 - a*u + b*u**3", a=a, b=b), chain=chain, v=v)
 
 
 def settled(model, *velocity):
@@ -185,11 +184,15 @@ def test_sticking_ends_where_thomsen_and_fidlin_say():
 @pytest.fixture(scope="module")
 def fold():
     """Where a stable and an unstable orbit without stops meet; averaging gives a = 0.145."""
-    model = Model(BLOCK, FormulaLaw(0.12, "0.9 + (a - 0.1)*(u - 1) - 0.2*(u - 1)**3 + 0.2*(u - 1)**5"), v=1.0)
-    (hopf,) = hopf_bifurcations(model, (0.05, 0.2))
+    model = Model(FormulaLaw("0.9 + (a - 0.1)*(u - 1) - 0.2*(u - 1)**3 + 0.2*(u - 1)**5", a=0.12), chain=BLOCK, v=1.0)
+    (hopf,) = hopf_bifurcations(model, (0.05, 0.2), parameter="a")
     steps = {"first_step": 1e-3, "largest_step": 4e-3}
     branch = follow(
-        hopf.orbit(), (0.05, 0.2), **steps, is_complete=lambda points: points[-1].multipliers.unstable_count == 0
+        hopf.orbit(),
+        (0.05, 0.2),
+        **steps,
+        parameter="a",
+        is_complete=lambda points: points[-1].multipliers.unstable_count == 0,
     )
     (bifurcation,) = locate_bifurcations(branch)
     return bifurcation
@@ -200,7 +203,7 @@ def test_a_fold_of_orbits_without_stops_is_that_of_scipys_return(fold):
     assert fold.value == pytest.approx(0.145, abs=1e-6)
     tops = np.linspace(1.72, 1.83, 12)
     for side, changes in ((-1e-4, 2), (1e-4, 0)):
-        model = fold.at.orbit.model.at(fold.value + side)
+        model = fold.at.orbit.model.at(a=fold.value + side)
         signs = np.sign([next_extremum(model, top, 1)[1] - top for top in tops])
         assert np.count_nonzero(np.diff(signs)) == changes
     orbit = fold.at.orbit
@@ -296,14 +299,14 @@ def test_branches_of_two_blocks_end_at_the_hopf_bifurcation_or_begin_to_stick(pa
 def test_five_blocks_have_an_unstable_orbit_without_stops_for_each_mode():
     """Its amplitude grows from 0 to v within a change of a of 3e-7, since friction is nearly linear in speed."""
     chain = Chain(5, coupling=1.5, damping=0.1, pulling_damping=0.05)
-    modes = hopf_bifurcations(Model(chain, FormulaLaw(0.02, "1/(1 + a*u)**2")), (0.0, 0.3))
+    modes = hopf_bifurcations(Model(FormulaLaw("1/(1 + a*u)**2", a=0.02), chain=chain), (0.0, 0.3), parameter="a")
     assert len(modes) == 5
     for mode in modes:
         omega, weakening = 2.0 * math.pi / mode.period, 2.0 * mode.value / (1.0 + 0.1 * mode.value) ** 3
         impedance = chain.stiffness - omega**2 * np.eye(5) + 1j * omega * (chain.damping_matrix - weakening * np.eye(5))
         assert np.linalg.svd(impedance, compute_uv=False)[-1] < 1e-12
     assert [mode.symmetry for mode in modes[:2]] == [Symmetry.SYNCHRONIZED, Symmetry.SYMMETRIC]
-    branch = follow(modes[0].orbit(), (0.02, 0.03), upward=False, is_complete=without_events)
+    branch = follow(modes[0].orbit(), (0.02, 0.03), upward=False, is_complete=without_events, parameter="a")
     (grazing,) = locate_bifurcations(branch)
     assert (grazing.kind, grazing.is_turning_point) == (BifurcationKind.GRAZING, True)
     assert 0.0 < modes[0].value - grazing.value < 1e-6
@@ -320,8 +323,8 @@ def test_the_amplitude_grows_as_a_square_root(hopf):
 
 
 def test_under_a_law_that_is_linear_in_speed_orbits_without_stops_are_neutral():
-    model = Model(Chain(2, pulling_damping=0.05), law_of("linearized", 0.05))
-    slow, _ = hopf_bifurcations(model, (0.01, 0.2))
+    model = Model("linearized", a=0.05, blocks=2, pulling_damping=0.05)
+    slow, _ = hopf_bifurcations(model, (0.01, 0.2), parameter="a")
     assert slow.value == pytest.approx(0.05, abs=1e-13)
     with pytest.raises(OrbitError, match="degenerate: friction is linear in speed"):
         slow.orbit()
@@ -338,7 +341,7 @@ def test_uniform_sliding_is_no_orbit():
         find_periodic_orbit(model, sliding_state(model), 3.0, Symmetry.SYNCHRONIZED)
     with pytest.raises(OrbitError, match="settles on uniform sliding"):
         settled(model, 0.6, 0.8)
-    unstable = Model(Chain(3), law_of("nonlinear", 0.3))
+    unstable = Model("nonlinear", a=0.3)
     with pytest.raises(OrbitError, match="uniform sliding, which is unstable: start from a displaced state"):
         limit_cycle(unstable, sliding_state(unstable))
 

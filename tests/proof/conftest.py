@@ -7,7 +7,7 @@ import pytest
 from flint import arb
 from mpmath import mpf
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Model
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.proof.arcs import State
 from burridge_knopoff.proof.balls import arithmetic
@@ -21,7 +21,7 @@ SLIPS = list(product((False, True), repeat=2))
 @pytest.fixture(scope="package")
 def family():
     """The family of orbits at v = 0.1."""
-    return synchronized_orbits(Model(Chain(3), law_of("linearized", 0.0)))
+    return synchronized_orbits(Model("linearized", a=0.0))
 
 
 def holds(ball, number, error="1e-45"):

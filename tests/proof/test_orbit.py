@@ -8,7 +8,7 @@ import pytest
 from flint import arb
 from scipy.optimize import bisect
 
-from burridge_knopoff import Chain, InitialState, Model, law_of, simulate
+from burridge_knopoff import InitialState, Model, simulate
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.proof.arcs import CENTER, LATERAL, Arc, State
@@ -111,7 +111,7 @@ def test_a_shift_along_the_flow_returns(proved):
 
 def test_bounds_of_speed_and_force_agree_with_a_run(proved, family):
     state = InitialState("on", *slipping_state(family.at(0.08)))
-    run = simulate("linearized", 0.08, state, transient=0.0, window=50.0, batches=2)
+    run = simulate(Model("linearized", a=0.08), state, transient=0.0, window=50.0, batches=2)
     for value, bound in (
         (run.velocity.max(), proved.speed_range()),
         (1.0 - run.least_spring_force, proved.force_margin_range()),
@@ -181,6 +181,6 @@ def test_an_orbit_on_which_not_all_blocks_stick_at_once_is_not_covered(family, a
 
 
 def test_another_law_than_the_papers_is_refused():
-    other = synchronized_orbits(Model(Chain(3), law_of("exponential", 0.0))).at(0.08)
+    other = synchronized_orbits(Model("exponential", a=0.0)).at(0.08)
     with refused("law exponential", error=ProofError):
         prove_orbit(other, arb(0.08))

@@ -5,7 +5,7 @@ import pytest
 from flint import arb, arb_series, fmpq
 from mpmath import mpf
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Model
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import bifurcations_of, critical_a
@@ -152,7 +152,7 @@ def test_a_step_that_no_box_encloses_is_refused(monkeypatch):
 
 @pytest.fixture(scope="module")
 def family():
-    return synchronized_orbits(Model(Chain(3), law_of("nonlinear", 0.0)))
+    return synchronized_orbits(Model("nonlinear", a=0.0))
 
 
 @pytest.fixture(scope="module")

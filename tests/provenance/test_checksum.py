@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray
 
-from burridge_knopoff import Chain, Model, law_of, simulate
+from burridge_knopoff import Model, simulate
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.provenance.bad_file import BadFile
@@ -38,7 +38,7 @@ def file(request, tmp_path_factory):
     if request.param == "table":
         write_table(path)
     else:
-        write_point(simulate("linearized", 0.08, "minus", transient=20.0, window=40.0, batches=2), path)
+        write_point(simulate(Model("linearized", a=0.08), "minus", transient=20.0, window=40.0, batches=2), path)
     return path
 
 
@@ -183,6 +183,6 @@ def test_the_same_content_has_the_same_bytes(file, tmp_path):
         assert (tmp_path / "again.nc").read_bytes() == file.read_bytes()
         assert open_summary(file)["name"].values[3] == "ä3"
     else:
-        model = Model(Chain(3), law_of("linearized", 0.08))
+        model = Model("linearized", a=0.08)
         write_point(simulate(model, initial="minus", transient=20.0, window=40.0, batches=2), tmp_path / "again.nc")
         assert (tmp_path / "again.nc").read_bytes() == file.read_bytes()

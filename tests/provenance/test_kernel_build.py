@@ -11,7 +11,10 @@ import pytest
 from burridge_knopoff.provenance import kernel_build
 from burridge_knopoff.provenance.sources import PACKAGE
 
-RUN = "from burridge_knopoff import simulate; print(simulate(transient=0.0, window=2.0).status)"
+RUN = (
+    "from burridge_knopoff import Model, simulate; "
+    "print(simulate(Model('linearized', a=0.08), transient=0.0, window=2.0).status)"
+)
 MODULE = Path("kernel/module.cpp")
 
 

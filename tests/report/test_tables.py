@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Model
 from burridge_knopoff.continuation.branch_changes import Change
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
@@ -58,7 +58,7 @@ def test_only_changes_of_a_synchronized_branch_are_listed():
 )
 def test_the_table_says_whether_synchrony_ends_at_a_c(coupling, words):
     """At coupling 2 the transverse multiplier never reaches 1. The chart has a line only at an end of synchrony."""
-    orbits = summarize([Model(Chain(3, coupling=coupling), law_of("linearized", 0.1))], [0.1])
+    orbits = summarize([Model("linearized", a=0.1, coupling=coupling)], [0.1])
     rows = {row["name"]: row["cells"] for row in transition_table(orbits)["rows"]}
     assert rows["stability of the orbit at a_c, as a grows"] == [words]
     assert np.isfinite(stability_edge(orbits.sel(law="linearized"))) == (words == "lost")

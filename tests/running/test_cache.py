@@ -16,7 +16,6 @@ from burridge_knopoff import (
     Model,
     MotionKind,
     SearchSettings,
-    law_of,
     simulate,
 )
 from burridge_knopoff.dataset.variables import Answer
@@ -39,7 +38,7 @@ def second(*items):
     return items[0]
 
 
-MODEL = Model(Chain(3), law_of("nonlinear", 0.08))
+MODEL = Model("nonlinear", a=0.08)
 CLASSES = (Item, Model, Chain, type(MODEL.law), Answer)
 CALLS = [
     (first, 1),
@@ -59,7 +58,7 @@ CALLS = [
     (partial(first, extra=1), 1),
     (partial(first, extra=2), 1),
     (first, MODEL),
-    (first, MODEL.at(0.0800000000000001)),
+    (first, MODEL.at(a=0.0800000000000001)),
     (first, dataclasses.replace(MODEL, contact="symmetric")),
 ]
 
@@ -75,10 +74,10 @@ def test_each_call_is_made_once_and_has_its_own_file(tmp_path):
 
 def test_cached_properties_and_identity_of_arguments_do_not_count(tmp_path):
     """A property computed before, or a shared object, does not make the call a different one."""
-    model = MODEL.at(0.05)
+    model = MODEL.at(a=0.05)
     path = cached_call(tmp_path, CLASSES, first, [model, model])[1]
     assert model.sliding_offset.shape == (3,)
-    assert cached_call(tmp_path, CLASSES, first, [model, MODEL.at(0.05)])[1:] == (path, True)
+    assert cached_call(tmp_path, CLASSES, first, [model, MODEL.at(a=0.05)])[1:] == (path, True)
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,7 @@ STIFF = {
 def test_the_cost_of_blocks_that_slip_together_grows_with_their_square(exponents):
     costs = []
     for blocks in (500, 1000):
-        model = Model(Chain(blocks), law_of("nonlinear", 0.3))
+        model = Model("nonlinear", a=0.3, blocks=blocks)
         begun = model.begin(InitialState("alike", -0.9, 0.1))
         costs.append(cost_of(model, begun, Settings(lyapunov_exponents=exponents)))
     assert costs[1][0] == pytest.approx(4.0 * costs[0][0])
@@ -32,7 +32,7 @@ def test_the_cost_of_blocks_that_slip_together_grows_with_their_square(exponents
 
 @pytest.mark.parametrize("exponents", [0, 3])
 def test_blocks_that_stick_share_no_event(exponents):
-    model = Model(Chain(1000), law_of("nonlinear", 0.3))
+    model = Model("nonlinear", a=0.3, blocks=1000)
     begun = model.begin(InitialState("drawn", -0.5, 0.0), "tested")
     assert begun.stuck.all()
     assert cost_of(model, begun, Settings(lyapunov_exponents=exponents))[0] == 0.0
@@ -42,7 +42,7 @@ def test_blocks_that_stick_share_no_event(exponents):
 @pytest.mark.parametrize("exponents", [0, 3])
 def test_the_cost_of_a_stiff_chain_is_that_measured(case, exponents):
     """Within a factor of six, on this machine; without the rate it is a thousand times too small."""
-    model = Model(Chain(3, **STIFF[case]), law_of("linearized", 0.1))
+    model = Model("linearized", a=0.1, blocks=3, **STIFF[case])
     settings = Settings(transient=0.0, window=2e4 / model.chain.highest_rate, lyapunov_exponents=exponents)
     state = InitialState("apart", (-0.98, -0.95, -0.96), (0.1, 0.11, 0.105))
     times = []
@@ -66,7 +66,7 @@ def test_the_cost_of_a_stiff_chain_is_that_measured(case, exponents):
 def test_a_stiff_chain_is_announced_wherever_a_run_begins(chain, words):
     """In a study before it runs, and in a program; the time is that of the whole run."""
     settings = Settings(transient=0.0, window=1e-3, batches=2)
-    model = Model(Chain(3, **chain), law_of("linearized", 0.1))
+    model = Model("linearized", a=0.1, blocks=3, **chain)
     state = InitialState("apart", (-0.98, -0.95, -0.96), (0.1, 0.11, 0.105))
     assert cost_note(model, model.begin(state), settings) == ""
     long = cost_note(model, model.begin(state), Settings())
@@ -104,7 +104,7 @@ def test_the_cost_of_a_ring_has_no_jump_where_it_becomes_dense():
     costs = []
     for cut_off in (4, 5):
         chain = Chain(1000, ends="ring", springs={"distance": "3/r", "cut_off": cut_off}, pulling=1.0)
-        model = Model(chain, law_of("nonlinear", 0.3))
+        model = Model("nonlinear", a=0.3, chain=chain)
         begun = model.begin(InitialState("alike", -0.9, 0.1))
         costs.append(cost_of(model, begun, Settings(lyapunov_exponents=0))[0])
     assert costs[0] < costs[1] < 3.0 * costs[0]
@@ -112,11 +112,11 @@ def test_the_cost_of_a_ring_has_no_jump_where_it_becomes_dense():
 
 def test_the_cost_of_a_dense_network_names_its_springs():
     """A grid of four neighbours is not dense; in a dense network an event costs something though all blocks stick."""
-    law, state = law_of("carlson_langer", 1.0, {"sigma": 0.2}), InitialState("alike", -0.9, 0.0)
+    law, state = law_of("carlson_langer", a=1.0, sigma=0.2), InitialState("alike", -0.9, 0.0)
     settings = Settings(start="tested", transient=0.0, window=1e6, lyapunov_exponents=0)
     notes = []
     for springs in (None, {"distance": "9/r**3"}):
-        model = Model(Chain(grid=(16, 16), springs=springs, pulling=1.0), law, 0.01)
+        model = Model(law, grid=(16, 16), springs=springs, pulling=1.0, v=0.01)
         notes.append(cost_note(model, model.begin(state, "tested"), settings))
     assert notes[0] == ""
     assert notes[1].startswith("256 blocks, 32640 springs: about")

@@ -26,9 +26,9 @@ from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from tests.scipy_flow import model_events
 
-DROP = law_of("carlson_langer", 0.6, {"sigma": 0.1})
+DROP = law_of("carlson_langer", a=0.6, sigma=0.1)
 #: Blocks that all move alike, each joined to its neighbours by a dashpot.
-UNIFORM = Model(Chain(4, coupling=1, pulling=1, damping=1), DROP)
+UNIFORM = Model(DROP, blocks=4, coupling=1, pulling=1, damping=1)
 ALIKE = InitialState("alike", (-0.9,) * 4, 0.1)
 
 
@@ -79,7 +79,7 @@ def test_perturbations_of_four_equal_blocks_have_no_multiplier():
     with refused():
         multipliers(orbit)
     with refused():
-        follow(orbit)
+        follow(orbit, parameter="a")
     with refused():
         transverse_exponent(UNIFORM, UNIFORM.begin(ALIKE))
 
@@ -96,14 +96,14 @@ def test_perturbations_of_four_equal_blocks_have_no_multiplier():
     ids=str,
 )
 def test_finite_perturbations_follow_the_multipliers(chain):
-    orbit = synchronized_orbit(Model(chain, DROP))
+    orbit = synchronized_orbit(Model(DROP, chain=chain))
     leading = abs(multipliers(orbit).whole[0])
     for seed in range(2):
         assert growth(orbit, by_package(orbit), 1e-7, seed, 80) == pytest.approx(leading, rel=1e-4)
 
 
 def test_without_a_drop_or_without_dashpots_the_order_does_not_matter():
-    for model in (Model(Chain(4, coupling=1, pulling=1), DROP), Model(UNIFORM.chain, law_of("linearized", 0.3))):
+    for model in (Model(DROP, blocks=4, coupling=1, pulling=1), Model("linearized", a=0.3, chain=UNIFORM.chain)):
         run = simulate(model, initial=ALIKE, transient=50, window=50)
         assert run.missing_derivative == ""
         assert np.isfinite(run.lyapunov_exponent[0])
@@ -114,10 +114,10 @@ def test_exponents_of_runs_alone_and_in_lanes():
     assert "blocks 1 and 2" in alone.missing_derivative
     assert (np.isnan(alone.lyapunov_exponent).all(), alone.lyapunov_infinite_count) == (True, -1)
     a = np.linspace(0.5, 0.6, 12)
-    together = sweep(UNIFORM, a, ALIKE, transient=50, window=50)
+    together = sweep(UNIFORM, ALIKE, a=a, transient=50, window=50)
     assert together.lyapunov_exponent.isnull().all()
     apart = InitialState("apart", (-0.9, -0.8, -0.91, -0.95), 0.1)
-    assert sweep(UNIFORM, a, apart, transient=50, window=50).lyapunov_exponent.notnull().all()
+    assert sweep(UNIFORM, apart, a=a, transient=50, window=50).lyapunov_exponent.notnull().all()
 
 
 @pytest.mark.parametrize("blocks", [23, 24])
@@ -125,7 +125,7 @@ def test_exponents_of_runs_alone_and_in_lanes():
 @pytest.mark.parametrize("loading", ["steady", "quasistatic"])
 def test_exponents_in_groups(blocks, groups, loading):
     def run(spread):
-        model = Model(Chain(blocks, coupling=1, pulling=1, damping=1), DROP)
+        model = Model(DROP, blocks=blocks, coupling=1, pulling=1, damping=1)
         exponents = Exponents(blocks, 2, 0.0, np.array([0.0, 30.0]))
         runner = Runner(model, exponents=exponents, groups=groups, loading=loading)
         state = InitialState("rest", tuple(-0.9 + spread * np.sin(np.arange(1.0, blocks + 1.0))), 0.0)
@@ -139,8 +139,8 @@ def test_exponents_in_groups(blocks, groups, loading):
 
 
 #: Without dashpots, quasi-static.
-PAPER_CHAIN = Model(Chain(3), law_of("carlson_langer", 1.0, {"sigma": 0.2}), v=1.0)
-PAIR = Model(Chain(2, coupling=1, pulling=1), law_of("carlson_langer", 1.0, {"sigma": 0.2}), v=1.0)
+PAPER_CHAIN = Model("carlson_langer", a=1.0, sigma=0.2, v=1.0)
+PAIR = Model("carlson_langer", a=1.0, sigma=0.2, blocks=2, coupling=1, pulling=1, v=1.0)
 
 
 def rest(model, *position):
@@ -196,4 +196,4 @@ def test_commands_and_files_say_why_there_are_no_exponents(tmp_path, capsys):
 
 def test_an_orbit_error_is_raised_only_where_the_order_matters():
     with pytest.raises(OrbitError):
-        multipliers(synchronized_orbit(Model(Chain(3, coupling=1, pulling=1, damping=1), DROP)))
+        multipliers(synchronized_orbit(Model(DROP, coupling=1, pulling=1, damping=1)))

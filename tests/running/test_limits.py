@@ -7,15 +7,15 @@ import time
 
 import pytest
 
-from burridge_knopoff import simulate
+from burridge_knopoff import Model, simulate
 from burridge_knopoff.running import runner
 from tests.refused import refused
 
 SINGLE = """
-from burridge_knopoff import Chain, simulate
+from burridge_knopoff import Model, simulate
 print("begun", flush=True)
-simulate("nonlinear", 5.0, (range(256), [0.1] * 256), chain=Chain(256, coupling=100.0), lyapunov_exponents={exponents},
-    transient=0.0, window=1e6, events="none", sampling=1e3)
+simulate(Model("nonlinear", a=5.0, blocks=256, coupling=100.0), (range(256), [0.1] * 256),
+    lyapunov_exponents={exponents}, transient=0.0, window=1e6, events="none", sampling=1e3)
 """
 MANY = """
 import numpy as np
@@ -62,11 +62,11 @@ def test_ctrl_c_ends_a_long_chain_at_once(program):
 def test_a_run_that_stores_too_much_ends_with_one_line(key, numbers, options, monkeypatch):
     """An event of three blocks has nine numbers with states, three without; a section crossing has three."""
     options = {"transient": 0.0, "window": 100.0, "event_window": 100.0, "lyapunov_exponents": 0, **options}
-    run = simulate("linearized", 0.08, "plus", **options)
+    run = simulate(Model("linearized", a=0.08), "plus", **options)
     count = {9: len(run.event_time), 3: len(run.earlier_event_time) or len(run.crossing_time)}[numbers]
     assert count > 5
     monkeypatch.setattr(runner, "MOST_NUMBERS", numbers * count)
-    assert simulate("linearized", 0.08, "plus", **options).event_count == run.event_count
+    assert simulate(Model("linearized", a=0.08), "plus", **options).event_count == run.event_count
     monkeypatch.setattr(runner, "MOST_NUMBERS", numbers * (count - 1))
     with refused(key, "numbers to store"):
-        simulate("linearized", 0.08, "plus", **options)
+        simulate(Model("linearized", a=0.08), "plus", **options)

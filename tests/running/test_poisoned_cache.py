@@ -11,7 +11,7 @@ from enum import Enum
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Model
 from burridge_knopoff.attractors.lifetime import Lifetime
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.continuation.cached import CLASSES
@@ -22,11 +22,11 @@ from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.running.cache import _HEAD, _head, cached_call
 from burridge_knopoff.running.packing import pack, unpack
 
-MODEL = Model(Chain(3), law_of("linearized", 0.08))
+MODEL = Model("linearized", a=0.08)
 
 
 def result_of(number):
-    return [MODEL.at(number), MotionKind.PERIODIC, np.arange(4.0), (1, {"a": b"bytes"}), np.float64(0.5)]
+    return [MODEL.at(a=number), MotionKind.PERIODIC, np.arange(4.0), (1, {"a": b"bytes"}), np.float64(0.5)]
 
 
 def parts_of(content):

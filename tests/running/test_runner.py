@@ -5,7 +5,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from burridge_knopoff import Chain, ChainState, FormulaLaw, InitialState, Model, Settings, law_of, simulate
+from burridge_knopoff import Chain, ChainState, FormulaLaw, InitialState, Model, Settings, simulate
 from burridge_knopoff.kernel._core import STATUS
 from burridge_knopoff.laws import LAWS
 from burridge_knopoff.model.initial import PAPER_STATES
@@ -29,7 +29,7 @@ UNEQUAL = {
 @pytest.mark.parametrize("law", ["linearized", "nonlinear", "carlson_langer", "stribeck"])
 @pytest.mark.parametrize("chain", UNEQUAL)
 def test_unequal_chains_and_rings_against_scipy(chain, law):
-    model = Model(Chain(4, **UNEQUAL[chain]), law_of(law, 0.3))
+    model = Model(law, a=0.3, blocks=4, **UNEQUAL[chain])
     assert not model.has_closed_form
     position = -0.3 + 0.25 * np.sin(1.0 + 2.0 * np.arange(4)) * model.chain.thresholds
     start = ChainState(position, 0.1 + 0.05 * np.cos(3.0 * np.arange(4)), np.zeros(4, dtype=bool))
@@ -81,7 +81,7 @@ def test_example_studies_against_scipy(repository, model, a, end, least, toleran
 
 
 def test_the_distance_of_unequal_chains_is_that_of_the_end_blocks():
-    model = Model(Chain(4, **UNEQUAL["open"]), law_of("nonlinear", 0.3))
+    model = Model("nonlinear", a=0.3, blocks=4, **UNEQUAL["open"])
     state = InitialState("uneven", (-0.4, -0.5, -0.3, -0.6), (0.1, 0.12, 0.1, 0.08))
     run = simulate(
         model, initial=state, settings=Settings(transient=10.0, window=20.0, batches=2, sampling=0.5, trajectory=30.0)
@@ -91,12 +91,12 @@ def test_the_distance_of_unequal_chains_is_that_of_the_end_blocks():
     assert np.abs(run.distance - np.hypot(*apart)).max() < 1e-9
 
 
-@pytest.mark.parametrize("law", [kind(0.26) for kind in LAWS.values()] + [FormulaLaw(0.26, "exp(-a*u)/(1 + a*u)")])
+@pytest.mark.parametrize("law", [kind(a=0.26) for kind in LAWS.values()] + [FormulaLaw("exp(-a*u)/(1 + a*u)", a=0.26)])
 @pytest.mark.parametrize("blocks", [3, 9])
 def test_observation_does_not_change_the_motion(law, blocks):
     """Every event time is the same to the bit, whatever is measured or stored, and however long the run."""
     state = PAPER_STATES["minus"] if blocks == 3 else wave(blocks, 0.05)
-    model = Model(Chain(blocks), law)
+    model = Model(law, blocks=blocks)
     everything = simulate(model, initial=state, settings=Settings(transient=100.0, window=700.0, events="all"))
     for options in (
         {"transient": 333.3, "window": 91.7},
@@ -112,7 +112,7 @@ def test_observation_does_not_change_the_motion(law, blocks):
 
 def test_longer_windows_continue_shorter_ones():
     """In chaos a difference in the last bit would soon lead to another trajectory."""
-    runs = [simulate("nonlinear", 0.26, "minus", window=window, events="all") for window in (900.0, 7000.0)]
+    runs = [simulate(Model("nonlinear", a=0.26), "minus", window=window, events="all") for window in (900.0, 7000.0)]
     count = len(runs[0].event_time)
     assert runs[0].event_time.tobytes() == runs[1].event_time[:count].tobytes()
 
@@ -125,7 +125,7 @@ def test_mirror_images_move_as_mirror_images(blocks, law, ends, seed):
     strength = generator.uniform(0.5, 2.0, blocks)
     chain = Chain(blocks, pulling=strength + strength[::-1], threshold=float(generator.uniform(0.7, 1.3)), ends=ends)
     assert chain.is_mirror_symmetric
-    model = Model(chain, law_of(law, generator.uniform(0.0, 0.5)))
+    model = Model(law, a=generator.uniform(0.0, 0.5), chain=chain)
     position, velocity = generator.uniform(-0.4, 0.4, blocks), generator.uniform(0.02, 0.3, blocks)
     start = ChainState(position, velocity, np.zeros(blocks, dtype=bool))
     solver, events = carry(model, start, 12.0)
@@ -148,14 +148,14 @@ def test_statuses_are_those_of_the_kernel():
 @pytest.mark.parametrize("arguments", [{"until": 5.0}, {"halting_block": 0}])
 def test_the_solver_of_fixed_steps_ends_only_at_the_end_of_a_window(arguments):
     """Without an observer there is no window, and the run would never end."""
-    runner = Runner(Model(Chain(3), law_of("linearized", 0.08)), "rk4")
+    runner = Runner(Model("linearized", a=0.08), "rk4")
     runner.begin(runner.model.begin(PAPER_STATES["minus"]))
     with refused("solver: 'rk4'"):
         runner.run(**arguments)
 
 
 def test_events_that_were_read_survive_another_run():
-    model = Model(Chain(3), law_of("linearized", 0.08))
+    model = Model("linearized", a=0.08)
     runner = Runner(model, keep_events=True)
     runner.state_after(model.begin(PAPER_STATES["plus"]), 40.0)
     time, block, _ = runner.events()
@@ -170,7 +170,7 @@ def test_events_that_were_read_survive_another_run():
 
 @pytest.mark.parametrize("solver", ["series", "rk4"])
 def test_a_log_of_stops_has_the_stops_of_the_whole_log_with_states(solver):
-    model = Model(Chain(3), law_of("linearized", 0.08))
+    model = Model("linearized", a=0.08)
     options = Settings(transient=30.0, window=60.0, event_window=60.0, solver=solver)
     whole, stops = (run(model, PAPER_STATES["plus"], options, stops_only=only) for only in (False, True))
     chosen = whole.event_kind == 0

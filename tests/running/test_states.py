@@ -26,8 +26,8 @@ from burridge_knopoff.running.runner import ROUNDING, Runner
 from burridge_knopoff.running.status import Status
 from tests.refused import refused
 
-CHAIN, LAW = Chain(3), law_of("nonlinear", 0.5)
-MODEL = Model(CHAIN, LAW)
+CHAIN, LAW = Chain(3), law_of("nonlinear", a=0.5)
+MODEL = Model(LAW, chain=CHAIN)
 ZEROS, ONES, SLIPPING, STUCK = np.zeros(3), np.ones(3), np.zeros(3, bool), np.ones(3, bool)
 
 BEGUN = {
@@ -69,7 +69,7 @@ def test_a_clock_that_is_not_a_number_is_refused():
 
 
 def test_blocks_slip_backward_under_symmetric_contact():
-    model = Model(CHAIN, LAW, contact="symmetric")
+    model = Model(LAW, chain=CHAIN, contact="symmetric")
     run = simulate(model, initial=ChainState(ZEROS, -ONES, SLIPPING), transient=0, window=5)
     assert run.status == "completed"
     assert run.initially_slipping.all()
@@ -92,7 +92,7 @@ def test_rounding_may_leave_a_stop_a_velocity_of_either_sign():
 @pytest.mark.parametrize("v", [0.1, 100.0])
 def test_runs_continue_from_their_events(solver, v):
     """Mirror blocks stop together: at the stop of one, rounding leaves the other a small velocity."""
-    model = Model(Chain(5, coupling=100.0), law_of("linearized", 0.3), v)
+    model = Model("linearized", a=0.3, blocks=5, coupling=100.0, v=v)
     offset = np.array([0.01, -0.02, 0.0, -0.02, 0.01])
     run = simulate(
         model,
@@ -125,8 +125,8 @@ def test_a_run_continues_from_wherever_it_went(blocks, solver):
     """
     begin = InitialState("own", tuple(np.linspace(-0.9, -0.99, blocks)), 0.1)
     options = {"solver": solver, "step": 2.0**-7, "transient": 0.0, "batches": 2}
-    whole = simulate("linearized", 6.0, begin, window=3.5, **options)
-    first = simulate("linearized", 6.0, begin, window=3.25, **options)
+    whole = simulate(Model("linearized", a=6.0, blocks=blocks), begin, window=3.5, **options)
+    first = simulate(Model("linearized", a=6.0, blocks=blocks), begin, window=3.25, **options)
     assert first.status == "completed"
     assert np.abs(first.final.position).max() > 1e6
     rest = simulate(first.model, initial=first.final, window=0.25, **options)
@@ -144,7 +144,7 @@ def test_a_run_continues_from_wherever_it_went(blocks, solver):
 
 def test_blocks_on_soft_springs_are_farther_away_than_states_of_a_user_may_be():
     """A spring of strength 1e-6 that is stretched by 5e6 does not overcome static friction of 10."""
-    model = Model(Chain(2, coupling=1e-6, pulling=1e-6, threshold=10.0), law_of("linearized", 0.08))
+    model = Model("linearized", a=0.08, blocks=2, coupling=1e-6, pulling=1e-6, threshold=10.0)
     rest = ChainState(np.full(2, 5e6), np.zeros(2), np.ones(2, bool))
     run = simulate(model, initial=rest, transient=0, window=50, lyapunov_exponents=0)
     assert run.status == "completed"

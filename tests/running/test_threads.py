@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from burridge_knopoff import simulate
+from burridge_knopoff import Model, simulate
 from burridge_knopoff.running.threads import map_in_threads
 
 
@@ -23,10 +23,10 @@ def test_an_error_ends_the_other_calls():
         if number == 0:
             time.sleep(0.2)
             raise ValueError("0: not allowed")
-        simulate("linearized", 0.16, transient=0.0, window=1e7, events="none", sampling=1e3)
+        simulate(Model("linearized", a=0.16), transient=0.0, window=1e7, events="none", sampling=1e3)
 
     begin = time.monotonic()
     with pytest.raises(ValueError, match="0: not allowed"):
         map_in_threads(2, call, range(3))
     assert time.monotonic() - begin < 10
-    assert simulate("linearized", 0.16, transient=0.0, window=10.0).status == "completed"
+    assert simulate(Model("linearized", a=0.16), transient=0.0, window=10.0).status == "completed"

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from burridge_knopoff import simulate
+from burridge_knopoff import Model, simulate
 from burridge_knopoff.cli import READER_GONE, main
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary, write_summary
@@ -28,7 +28,7 @@ BK = str(Path(sys.executable).parent / "bk")
 @pytest.fixture(scope="module")
 def point(tmp_path_factory):
     path = tmp_path_factory.mktemp("point") / "plus.nc"
-    write_point(simulate("linearized", 0.08, "plus", transient=3000.0, window=1000.0, batches=4), path)
+    write_point(simulate(Model("linearized", a=0.08), "plus", transient=3000.0, window=1000.0, batches=4), path)
     return path
 
 
@@ -100,7 +100,7 @@ def test_a_point_as_a_picture(point, tmp_path, capsys):
 
 def test_a_run_that_failed(tmp_path, capsys):
     path = tmp_path / "failed.nc"
-    write_point(simulate("linearized", 1.9, "minus", contact="symmetric", transient=0.0, window=1000.0), path)
+    write_point(simulate(Model("linearized", a=1.9, contact="symmetric"), "minus", transient=0.0, window=1000.0), path)
     said = output_of(capsys, path, "--plot", tmp_path / "failed.png")
     for words in (
         ": diverged at tau = 22.479\n",

@@ -46,7 +46,7 @@ BAD_CHANGES = [
     ({"laws": {"linearized": None}}, ["laws.linearized: None", "{} for a built-in law with its defaults"]),
     ({"laws": {"a" * 40: {"law": "linearized"}}}, ["laws: 'aaa", "at most 32"]),
     ({"laws": {"m": {"formula": "1 - a*u", "name": 1}}}, ["laws.m.name: not a parameter of a law"]),
-    ({"laws": {"m": {"formula": "1 - a*u", "a": 1}}}, ["laws.m.a: got a reserved name"]),
+    ({"laws": {"m": {"formula": "1 - a*u", "a": 1}}}, ["laws.m.a: got a number of the law"]),
     ({"laws": {"m": {"formula": "1 - window*u", "window": 1}}}, ["laws.m.window: ", "name of a setting"]),
     ({"laws": {"m": {"formula": "1 - samples*u", "samples": 1}}}, ["laws.m.samples: ", "name of a setting"]),
     ({"laws": {"m": {"formula": "1 - coupling*u", "coupling": 1}}}, ["laws.m.coupling: ", "name of a setting"]),

@@ -133,7 +133,7 @@ def test_laws_in_the_order_of_the_config():
     assert list(study.config["basins"]["a"]) == list(study.laws)
     assert study.config["chains"]["laws"] == ["nonlinear"]
     assert study.model("cl", 0.5)
-    assert study.model("soft", 3.0).law.parameters == {"sigma": 0.05, "eta": 0.1}
+    assert study.model("soft", 3.0).law.parameters == {"a": 3.0, "sigma": 0.05, "eta": 0.1}
     assert study.model("soft", 3.0).law.name == "soft"
     assert float(study.model("cl", 0.3).law(0.0)) == 0.99
 
@@ -142,7 +142,7 @@ def test_a_model_has_the_chain_and_driver_of_the_config():
     chain = {"coupling": [1, 2, 3], "pulling": 0.5, "threshold": [1, 2, 1], "ends": "ring"}
     model = load(chain=chain, v=0.2, contact="symmetric").model("nonlinear", 0.08)
     assert model.chain == Chain(3, (1.0, 2.0, 3.0), 0.5, (1.0, 2.0, 1.0), "ring")
-    assert (model.v, model.contact, model.a) == (0.2, "symmetric", 0.08)
+    assert (model.v, model.contact, model.parameter("a")) == (0.2, "symmetric", 0.08)
 
 
 def test_command_of_a_point():

@@ -33,7 +33,7 @@ def test_points_are_named_in_the_order_of_the_config_and_contain_their_parameter
     assert len({*names}) == len(names) == 2 * 2 * 4
     for point in points:
         model, _, _ = study.run_of(**point)
-        parameters = {"law": model.law.name, "v": model.v, "a": model.a, "coupling": model.chain.coupling}
+        parameters = {"law": model.law.name, "v": model.v, "a": model.parameter("a"), "coupling": model.chain.coupling}
         assert parameters == {name: point["law"] if name == "law" else float(point[name]) for name in parameters}
     command = study.command(**points[0])
     assert all(words in command for words in ("--a 0.2", "--v 0.05", "--coupling 0.5"))

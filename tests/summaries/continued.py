@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from burridge_knopoff import Chain, InitialState, Model, MotionKind, SearchSettings, Symmetry, law_of
+from burridge_knopoff import InitialState, Model, MotionKind, SearchSettings, Symmetry
 from burridge_knopoff.attractors.lifetime import Lifetime
 from burridge_knopoff.continuation.attractor_continuation import Continuation
 from tests.motion.stand_in import stand_in
@@ -32,7 +32,7 @@ def continuation(law):
     numbers = [([1, 0], [0, 0]), ([1], [0]), ([1, 1], [-1, 1]), ([], [])]
     dying = Lifetime(4, 1200.0)
     return Continuation(
-        [Model(Chain(3), law_of(law, a), 0.2) for a in (0.05, 0.07, 0.1, 0.2)],
+        [Model(law, a=a, v=0.2) for a in (0.05, 0.07, 0.1, 0.2)],
         [0, 2, 3],
         [first, between, second, []],
         lifetimes=[[None, None], [None], [dying, dying], []],

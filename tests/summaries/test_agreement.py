@@ -7,7 +7,7 @@ import pytest
 import xarray
 from scipy.stats import wasserstein_distance
 
-from burridge_knopoff import simulate
+from burridge_knopoff import Model, simulate
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.motion.kind import MotionKind
@@ -25,7 +25,7 @@ SETTINGS = {"transient": 2000.0, "window": 400.0, "batches": 4}
 @pytest.fixture(scope="module")
 def runs():
     """Runs from one initial state at two values of a under both laws."""
-    return {(law, a): simulate(law, a, "minus", **SETTINGS) for law in PAPER_LAWS for a in (0.05, 0.08)}
+    return {(law, a): simulate(Model(law, a=a), "minus", **SETTINGS) for law in PAPER_LAWS for a in (0.05, 0.08)}
 
 
 @pytest.fixture

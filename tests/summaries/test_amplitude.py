@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import linregress
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Model
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.pitchfork import branching_orbit
 from burridge_knopoff.study.paper import PAPER_LAWS
@@ -15,7 +15,7 @@ CRITICAL = {"linearized": 0.0869729046660773, "nonlinear": 0.0887172229711765}
 
 @pytest.fixture(scope="module")
 def families():
-    return {law: synchronized_orbits(Model(Chain(3), law_of(law, 0.0))) for law in PAPER_LAWS}
+    return {law: synchronized_orbits(Model(law, a=0.0)) for law in PAPER_LAWS}
 
 
 @pytest.mark.parametrize("law", PAPER_LAWS)

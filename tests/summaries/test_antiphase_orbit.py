@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Model
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.summaries.antiphase_orbit import LARGEST_A, antiphase_differences, antiphase_orbit
 
 
 def models(**parameters):
-    return [Model(Chain(3), law_of(law, 0.05)).at(**parameters) for law in ("linearized", "nonlinear")]
+    return [Model(law, a=0.05).at(**parameters) for law in ("linearized", "nonlinear")]
 
 
 @pytest.mark.parametrize("v", [0.1, 0.2])

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, MotionKind, SearchSettings, Symmetry, law_of
+from burridge_knopoff import InitialState, Model, MotionKind, SearchSettings, Symmetry
 from burridge_knopoff.attractors.lifetime import Lifetime
 from burridge_knopoff.attractors.table import name_branches, slot_values
 from burridge_knopoff.continuation.attractor_continuation import continue_attractors
@@ -106,7 +106,7 @@ def test_rounded_states_are_the_corners_of_a_box_around_an_initial_state():
 def test_plus_lies_next_to_a_boundary_at_0_05_and_not_at_0_08():
     """Linearized: at 0.05 some states that round to plus synchronize, which plus does not."""
     search = SearchSettings(samples=12, fraction_width=0.5, transient=1000, window=1000, seed=3)
-    models = [Model(Chain(3), law_of("linearized", a)) for a in (0.05, 0.08)]
+    models = [Model("linearized", a=a) for a in (0.05, 0.08)]
     states = [PAPER_STATES["minus"], PAPER_STATES["plus"]]
     along_a = continue_attractors(models, search, refine=RefinementSettings(1.0), starts=states)
     dataset = attractors.one_law(along_a, states, search, MOTION, "moving")

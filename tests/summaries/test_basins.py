@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Model
 from burridge_knopoff.attractors.settings import SEARCH
 from burridge_knopoff.attractors.stored_returns import KnownAttractors
 from burridge_knopoff.basins.pair_separation import SEPARATIONS, follow_pairs
@@ -17,7 +17,7 @@ from burridge_knopoff.summaries import basins
 from burridge_knopoff.summaries.map_rows import count_symmetric_undetermined
 
 PLANE = BasinSettings(pixels=4, first_position=(-1.0, 3.0), last_position=(0.0, 2.0), pairs=50, tiles=2)
-MODELS = [Model(Chain(3), law_of(law, a), 0.2, "symmetric") for law, a in (("nonlinear", 0.1), ("linearized", 0.3))]
+MODELS = [Model(law, a=a, v=0.2, contact="symmetric") for law, a in (("nonlinear", 0.1), ("linearized", 0.3))]
 
 
 @pytest.fixture

@@ -8,12 +8,10 @@ import xarray as xr
 
 from burridge_knopoff import (
     BifurcationKind,
-    Chain,
     ChainState,
     Model,
     MotionKind,
     OrbitError,
-    law_of,
     limit_cycle,
     multipliers,
     synchronized_orbit,
@@ -41,14 +39,14 @@ FEATURES = {
     "upward_branch": [0, 1, 1, 1, -1],
     "downward_branch": [-1, 0, 0, 1, 1],
 }
-MODEL = Model(Chain(3), law_of("linearized", 0.1))
+MODEL = Model("linearized", a=0.1)
 
 
 @pytest.fixture(scope="module")
 def grid():
     """Attractors of one law: one at each a, whose state is that of a long run from the paper's `minus`."""
     states = []
-    for model in map(MODEL.at, A):
+    for model in [MODEL.at(a=a) for a in A]:
         runner = Runner(model)
         runner.begin(model.begin(PAPER_STATES["minus"]))
         runner.run(8000.0)
@@ -168,7 +166,7 @@ def test_a_bifurcation_lies_near_the_values_that_bracket_it(dataset):
 
 def test_a_stable_motion_lies_on_a_stable_orbit():
     """Near unstable synchrony no orbit is found at first; in the end the blocks desynchronize."""
-    model = MODEL.at(0.09)
+    model = MODEL.at(a=0.09)
     start = synchronized_orbit(model).reference
     position = start.position + np.array([1e-5, 0.0, -1e-5])
     with pytest.raises(OrbitError, match="no periodic orbit"):
@@ -180,7 +178,7 @@ def test_a_stable_motion_lies_on_a_stable_orbit():
 
 def test_an_unstable_orbit_is_not_one_on_which_a_motion_has_settled():
     """Exact synchrony persists, however long the settling time."""
-    model = MODEL.at(0.09)
+    model = MODEL.at(a=0.09)
     start = synchronized_orbit(model).reference
     error = _periodic_orbit(model, start.position + model.sliding_offset, start.velocity)
     assert str(error) == "a = 0.09: the periodic orbit next to the motion is unstable"

@@ -6,7 +6,7 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Model
 from burridge_knopoff.attractors.lookup import side_name
 from burridge_knopoff.report.tables import branch_table
 from burridge_knopoff.summaries import branch_numbering
@@ -39,11 +39,15 @@ def test_laws_are_merged_with_common_branch_numbers(one_law):
 def test_branches_that_turn_into_each_other_share_a_number(monkeypatch, one_law):
     """All other branches have a unique number over all laws."""
     parts = [one_law(law) for law in ("linearized", "nonlinear", "exponential")]
-    models = [Model(Chain(3), law_of(part.attrs["law"], 0.0), 0.2) for part in parts]
+    models = [Model(part.attrs["law"], a=0.0, v=0.2) for part in parts]
     answers = [{0: 0, 1: 1}, {0: 0}]
 
     def match_branches(firsts, seconds, first, second, settings, **_):
-        assert [model.a for model in firsts] == [model.a for model in seconds] == [0.05, 0.1, 0.2]
+        assert (
+            [model.parameter("a") for model in firsts]
+            == [model.parameter("a") for model in seconds]
+            == [0.05, 0.1, 0.2]
+        )
         assert {model.law.name for model in firsts} == {"linearized"}
         assert sorted(first) == sorted(second) == [0, 1]
         # For a mirror pair, the first side.
@@ -79,7 +83,7 @@ def test_numbers_follow_the_order_in_which_branches_appear_under_the_first_law()
 def test_without_synchrony_on_the_grid_its_number_remains_free(one_law):
     part = one_law("linearized")
     part["branch"][...] = np.where(part["branch"] == 0, -1, part["branch"])
-    model = Model(Chain(3), law_of("linearized", 0.0), 0.2)
+    model = Model("linearized", a=0.0, v=0.2)
     assert branch_numbering.branch_numbers([part], [model], SETTINGS) == [{1: 1}]
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray
 
-from burridge_knopoff import Chain, Model, law_of, simulate
+from burridge_knopoff import Chain, Model, simulate
 from burridge_knopoff.attractors.asymptotic_states import asymptotic_states
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.dataset.summary import open_summary, write_summary
@@ -27,7 +27,7 @@ def chain_file(blocks, time_limit=400.0):
 
 
 def models(blocks, laws):
-    return [Model(Chain(blocks), law_of(law, 0.0)) for law in laws]
+    return [Model(law, a=0.0, blocks=blocks) for law in laws]
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff import ChainState, Model
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.runner import Runner
@@ -13,7 +13,7 @@ from burridge_knopoff.summaries.one_frequency import has_one_frequency
 
 
 def frequencies_of_branch_1(law: str, a: float, detuning: float) -> DetunedMotion:
-    model = Model(Chain(3), law_of(law, a))
+    model = Model(law, a=a)
     return detuned_motion(model, Runner(model).state_after(model.begin(PAPER_STATES["plus"]), 3000.0), detuning, 3)
 
 
@@ -35,7 +35,7 @@ def test_the_end_blocks_keep_one_frequency_with_unequal_masses(law: str, a: floa
 @pytest.mark.parametrize("detuning", [0.1, 0.3])
 def test_blocks_moved_by_springs_alone_keep_one_frequency_but_are_not_locked(detuning: float) -> None:
     """At a = 0 friction is constant: small oscillations about sliding are those of the springs, without any locking."""
-    model = Model(Chain(3), law_of("linearized", 0.0))
+    model = Model("linearized", a=0.0)
     antiphase = ChainState(np.array([0.05, 0.0, -0.05]), np.full(3, model.v), np.zeros(3, bool))
     motion = detuned_motion(model, antiphase, detuning, 3)
     masses = 1.0 + np.array([0.0, 0.0, detuning])
@@ -55,7 +55,7 @@ def test_blocks_moved_by_springs_alone_keep_one_frequency_but_are_not_locked(det
 
 def test_a_weakly_stable_phase_is_resolved_by_a_longer_window() -> None:
     """Branch 2 at a = 0.0925: a window of 4000 gives −8.5e-4 ± 4.1e-4, one of 512,000 −7.69e-4 ± 1.2e-5."""
-    model = Model(Chain(3), law_of("nonlinear", 0.0925))
+    model = Model("nonlinear", a=0.0925)
     start = ChainState(np.array([0.0618, 0.0135, -0.0271]), np.array([0.1925, 0.1088, 0.0417]), np.zeros(3, bool))
     motion = detuned_motion(model, start, 0.3, 3)
     assert attracts(motion)
@@ -65,7 +65,7 @@ def test_a_weakly_stable_phase_is_resolved_by_a_longer_window() -> None:
 
 
 def antiphase(law: str, a: float) -> tuple[Model, ChainState]:
-    model = Model(Chain(3), law_of(law, a))
+    model = Model(law, a=a)
     state = ChainState(np.array([0.07, 0.0, -0.07]), np.full(3, model.v), np.zeros(3, bool))
     return model, Runner(model).state_after(state, 3000.0)
 
@@ -78,10 +78,10 @@ def test_as_a_vanishes_the_motion_is_that_of_the_mode_of_unequal_masses(law: str
     for a in (0.02, 0.005):
         model, start = antiphase(law, a)
         if branch == 1:
-            model = model.at(0.03)
+            model = model.at(a=0.03)
             start = Runner(model).state_after(model.begin(PAPER_STATES["plus"]), 3000.0)
             for step in np.linspace(0.03, a, 4):
-                model = model.at(step)
+                model = model.at(a=step)
                 start = Runner(model).state_after(start, 3000.0)
         motion = detuned_motion(model, start, 0.3, 3)
         assert has_one_frequency(motion.frequency)
@@ -129,7 +129,7 @@ def test_at_equal_masses_their_frequencies_are_equal_by_symmetry() -> None:
 
 def test_a_motion_that_does_not_complete_has_no_frequencies(monkeypatch: pytest.MonkeyPatch) -> None:
     """The motion after the end of such a run has not settled."""
-    model = Model(Chain(3), law_of("linearized", 0.05))
+    model = Model("linearized", a=0.05)
     monkeypatch.setattr("burridge_knopoff.running.runner.STEP_LIMIT", 500)
     motion = detuned_motion(model, model.begin(PAPER_STATES["plus"]), 0.1, 3)
     for values in (motion.frequency, motion.frequency_error, motion.exponent, motion.mode_share):

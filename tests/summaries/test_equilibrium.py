@@ -7,7 +7,7 @@ from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, Settings, l
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.equilibrium import digest, eigenvalues, simulate_sliding, sliding_position, summarize
 
-MODELS = [Model(Chain(3), law_of(law, 0.0)) for law in PAPER_LAWS]
+MODELS = [Model(law, a=0.0) for law in PAPER_LAWS]
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +42,7 @@ def test_the_positions_of_the_paper(dataset):
 )
 @pytest.mark.parametrize("law", ["linearized", "nonlinear", "exponential", "stribeck", "carlson_langer"])
 def test_the_equilibrium_of_any_chain(chain, law):
-    model = Model(chain, law_of(law, 0.4), 0.7)
+    model = Model(law, a=0.4, chain=chain, v=0.7)
     force = -chain.stiffness @ sliding_position(model)
     assert force == pytest.approx(chain.thresholds * float(model.law(0.7)), abs=1e-11)
     mine, theirs = eigenvalues(model), np.linalg.eigvals(jacobian(model))
@@ -68,7 +68,7 @@ def test_the_equilibrium_of_any_chain(chain, law):
     ],
 )
 def test_masses_networks_and_friction(chain):
-    model = Model(chain, law_of("nonlinear", 0.4), 0.7)
+    model = Model("nonlinear", a=0.4, chain=chain, v=0.7)
     assert sliding_position(model) == pytest.approx(model.sliding_offset, rel=1e-12)
     slope = -0.4 * chain.weakenings / (1.0 + 0.4 * 0.7 * chain.weakenings) ** 2
     blocks = np.zeros((chain.blocks, chain.blocks)), np.eye(chain.blocks)
@@ -84,7 +84,7 @@ def test_masses_networks_and_friction(chain):
 
 
 def test_a_large_chain_has_no_modes_in_the_summary():
-    assert np.isnan(summarize([Model(Chain(2000), law_of("linearized", 0.1))], [0.1])["eigenvalue"]).all()
+    assert np.isnan(summarize([Model("linearized", a=0.1, blocks=2000)], [0.1])["eigenvalue"]).all()
 
 
 def test_eigenvalues_and_growth_rates(dataset):
@@ -99,7 +99,7 @@ def test_eigenvalues_and_growth_rates(dataset):
 
 
 def test_other_positions_are_not_an_equilibrium():
-    model = Model(Chain(3), law_of("linearized", 0.08))
+    model = Model("linearized", a=0.08)
     drift, _ = simulate_sliding(model, sliding_position(model) + np.array([1e-3, 0.0, 0.0]))
     assert drift > 1e-4
 
@@ -119,7 +119,7 @@ def test_a_small_perturbation_grows_at_the_growth_rate(dataset, periods):
     rate, frequency = dataset.sel(law="linearized", a=0.3)["eigenvalue"].sel(mode=3).values
     duration = periods * 2 * np.pi / frequency
     # κ = 2: the mode's eigenvector is (1, 0, −1).
-    grown = growth(Model(Chain(3), law_of("linearized", 0.3)), (1.0, 0.0, -1.0), rate, duration, 1e-5)
+    grown = growth(Model("linearized", a=0.3), (1.0, 0.0, -1.0), rate, duration, 1e-5)
     assert grown == pytest.approx(np.exp(rate * duration), rel=1e-8)
 
 
@@ -130,16 +130,16 @@ def test_the_numbers_are_reproducible(dataset):
 @pytest.mark.parametrize(
     ("law", "rate"),
     [
-        (law_of("exponential", 1.0), 0.5 * np.exp(-0.5)),
-        (FormulaLaw(1.0, "exp(-a*u)"), 0.5 * np.exp(-0.5)),
+        (law_of("exponential", a=1.0), 0.5 * np.exp(-0.5)),
+        (FormulaLaw("exp(-a*u)", a=1.0), 0.5 * np.exp(-0.5)),
         # −Φ'(v)/2 = a (exp(−av/σ) − η)/2: beyond the least friction perturbations decay.
-        (law_of("stribeck", 0.2, {"sigma": 0.2}), 0.1 * (np.exp(-0.5) - 0.2)),
-        (law_of("stribeck", 1.0), 0.5 * (np.exp(-10.0) - 0.2)),
+        (law_of("stribeck", a=0.2, sigma=0.2), 0.1 * (np.exp(-0.5) - 0.2)),
+        (law_of("stribeck", a=1.0), 0.5 * (np.exp(-10.0) - 0.2)),
     ],
 )
 def test_the_growth_rate_is_that_of_a_simulated_perturbation(law, rate):
     """At v = 0.5 the slower mirror-symmetric perturbation grows or decays at this rate."""
-    model = Model(Chain(2), law, 0.5)
+    model = Model(law, blocks=2, v=0.5)
     spectrum = eigenvalues(model)
     assert spectrum.real == pytest.approx([rate] * 4, abs=1e-12)
     assert simulate_sliding(model, sliding_position(model))[1] == pytest.approx(rate, abs=1e-10)
@@ -150,7 +150,7 @@ def test_the_growth_rate_is_that_of_a_simulated_perturbation(law, rate):
 
 def test_strong_damping_has_modes_that_do_not_oscillate():
     """κ = 1 and 3 with g = 2.5: g²/4 lies between."""
-    model = Model(Chain(2), law_of("linearized", 2.5))
+    model = Model("linearized", a=2.5, blocks=2)
     spectrum = eigenvalues(model)
     assert spectrum == pytest.approx(
         [1.25 + 0.75, 1.25 - 0.75, *(1.25 + s * 1j * (3 - 1.25**2) ** 0.5 for s in (1, -1))]
@@ -163,7 +163,7 @@ def test_strong_damping_has_modes_that_do_not_oscillate():
 @pytest.mark.parametrize("law", PAPER_LAWS)
 def test_the_energy_about_sliding_grows_until_a_block_stops(law):
     """This holds for any motion under a law that decreases with velocity, so sticks are unavoidable."""
-    model = Model(Chain(3), law_of(law, 0.3))
+    model = Model(law, a=0.3)
     for seed in range(4):
         shift = 0.02 * np.random.default_rng(seed).uniform(-1.0, 1.0, 6)
         state = InitialState("near", tuple(model.sliding_offset + shift[:3]), tuple(model.v + shift[3:]))
@@ -181,8 +181,8 @@ def test_the_energy_about_sliding_grows_until_a_block_stops(law):
 
 def test_a_single_value_of_a_is_not_named():
     """A law without a has one; its growth rate is half the slope less the damping, (exp(−2) − 0.1)/2."""
-    law = law_of("belt", 0.0, formula="mud + (mus - mud)*exp(-u/v0)", mus=1.0, mud=0.5, v0=0.5)
-    model = Model(Chain(3, pulling=1.0, pulling_damping=0.1), law, 1.0)
+    law = law_of({"belt": {"formula": "mud + (mus - mud)*exp(-u/v0)"}}, mus=1.0, mud=0.5, v0=0.5)
+    model = Model(law, pulling=1.0, pulling_damping=0.1, v=1.0)
     rate = 0.5 * (np.exp(-2.0) - 0.1)
     assert digest(summarize([model], [0.0])) == (
         f"belt: perturbations of uniform sliding grow in every case; the largest growth rate is {rate:.4g}"

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, MotionKind, law_of, simulate
+from burridge_knopoff import InitialState, Model, MotionKind, simulate
 from burridge_knopoff.summaries import bifurcation_diagram
 from tests.grids import PAPER_MODELS, grid_of
 from tests.sections import MOTION
@@ -16,7 +16,7 @@ SHORT = {"transient": 50.0, "window": 50.0, "batches": 2}
 
 def test_settling_times_of_runs(tmp_path):
     settings = {"transient": 1500.0, "window": 100.0, "batches": 2}
-    run = simulate("linearized", 0.08, "minus", **settings)
+    run = simulate(Model("linearized", a=0.08), "minus", **settings)
     grid = grid_of(tmp_path, ["minus"], {"0.0800": 0.08}, **settings)
     ended = {"linearized": "completed", "nonlinear": "step_limit"}
     write_points(*grid, lambda trajectory: dataclasses.replace(trajectory, status=ended[trajectory.model.law.name]))
@@ -43,7 +43,7 @@ def test_slips_of_the_linearized_law_are_a_multiple_of_the_driver_at_one_a():
     """With stiffer springs at fixed V, a decreases and v increases: aU' is av times a function of a alone."""
     speeds = []
     for v in (0.1, 0.02):
-        model = Model(Chain(3), law_of("linearized", 0.08), v)
+        model = Model("linearized", a=0.08, v=v)
         offset, size = model.sliding_offset, v / 0.1
         state = {"position": tuple(offset + size * np.array([-0.02, 0.03, -0.01])), "velocity": (v, v, v)}
         run = simulate(model, initial=InitialState("near", **state), transient=1500.0, window=200.0, batches=2)
@@ -99,9 +99,9 @@ def points(tmp_path):
     """Points whose section points are alternately upward and downward, the latter at −1, −2, …"""
 
     def alter(trajectory):
-        exponent, upward, status, *_ = RUNS[trajectory.model.a]
+        exponent, upward, status, *_ = RUNS[trajectory.model.parameter("a")]
         section = np.stack([upward, -1.0 - np.arange(len(upward))], axis=1).ravel()
-        averages = {"status": status, "mean_distance": trajectory.model.a}
+        averages = {"status": status, "mean_distance": trajectory.model.parameter("a")}
         averages |= {"lyapunov_exponent": np.array(exponent), "lyapunov_error": np.full(3, 1e-5)}
         return with_section(trajectory, section, np.tile(np.array([1, -1], np.int8), len(upward)), **averages)
 

@@ -25,7 +25,7 @@ from tests.normal_forms import CRITICAL, antisymmetric, orbit_at
 
 
 def models(laws=PAPER_LAWS, chain=None, **options):
-    return [Model(chain or Chain(3), law_of(law, 0.1), **options) for law in laws]
+    return [Model(law, a=0.1, chain=chain or Chain(3), **options) for law in laws]
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +39,7 @@ def test_curves_agree_with_the_orbits(dataset):
     assert dataset.attrs["v"] == 0.1
     for law in PAPER_LAWS:
         for a in (0.05, 0.1):
-            orbit = synchronized_orbits(Model(Chain(3), law_of(law, 0.0))).at(a)
+            orbit = synchronized_orbits(Model(law, a=0.0)).at(a)
             point = dataset.sel(law=law, a=a)
             values = point["multiplier"].sel(part="real").values + 1j * point["multiplier"].sel(part="imaginary").values
             expected = multipliers(orbit)
@@ -110,7 +110,7 @@ def test_the_transition_is_recomputed(dataset):
     assert d[::5] == pytest.approx([1e-4, 1e-3, 1e-2], rel=1e-12)
     orbit = branching_orbit(family.at(critical), d[7])
     for name, value in {
-        "offset": orbit.model.a - critical,
+        "offset": orbit.model.parameter("a") - critical,
         "period": orbit.period,
         "residual": orbit.residual,
         "multiplier": abs(multipliers(orbit).whole[0]),
@@ -197,10 +197,11 @@ def test_an_asymmetric_chain_has_no_synchronized_orbit():
 
 
 @pytest.mark.parametrize(
-    ("formula", "status"), [("1 + 0*u", 1), ("1 + 0.1*u", 2), ("0.9 + 0*u", 2), ("1 - a*u", 1), ("1 - (1 - a)*u", 2)]
+    ("formula", "status"), [("1 + 0*u", 1), ("1 + 0.1*u", 2), ("0.9 + 0*u", 0), ("1 - a*u", 1), ("1 - (1 - a)*u", 2)]
 )
 def test_constant_friction_is_neutral(formula, status):
-    model = Model(Chain(3), FormulaLaw(0.1, formula, name="mine"))
+    law = FormulaLaw(formula, name="mine")
+    model = Model(law.at(**dict.fromkeys(law.missing, 0.1)))
     assert summarize([model], [0.0])["status"].values.tolist() == [[status]]
 
 
@@ -208,7 +209,7 @@ def test_offsets_of_sweeps_scale_with_the_chain(monkeypatch):
     """With thresholds ten times as high, a_c and all other values of a are a tenth."""
     swept = []
     monkeypatch.setattr(orbits, "sweep", lambda orbits, values: swept.append(values) or np.zeros(len(values)))
-    model = Model(Chain(3, threshold=10.0), law_of("linearized", 0.0))
+    model = Model("linearized", a=0.0, threshold=10.0)
     critical = summarize([model], [0.005])["critical_a"].item()
     assert critical == pytest.approx(0.00869729047, abs=1e-9)
     assert swept[0] - critical == pytest.approx(0.1 * np.array(orbits.OFFSETS), abs=1e-12)
@@ -238,12 +239,12 @@ def test_orbits_that_branch_off_where_synchrony_is_unstable_are_supercritical(c,
 
 def test_the_orbit_of_a_law_without_a_and_one_without_stops():
     """Runs have their periods; without stops a perturbation of x_1 − x_3 has two multipliers, and none is listed."""
-    belt = law_of("belt", 0.0, formula="mud + (mus - mud)*exp(-u/v0)", mus=1.0, mud=0.5, v0=0.5)
-    cubic = law_of("cubic", 0.3, formula="1 - a*u + b*u**3", b=0.3)
+    belt = law_of({"belt": {"formula": "mud + (mus - mud)*exp(-u/v0)"}}, mus=1.0, mud=0.5, v0=0.5)
+    cubic = law_of({"cubic": {"formula": "1 - a*u + b*u**3"}}, a=0.3, b=0.3)
     state = {"position": [-0.9, -1.0, -0.9], "velocity": [0.7, 0.72, 0.7]}
     for law, grid, v, listed in ((belt, [0.0], 1.0, [True]), (cubic, [0.5, 0.6], 0.7, [False, True])):
-        model = Model(Chain(3), law, v)
+        model = Model(law, v=v)
         part = summarize([model], grid)
-        periods = [simulate(model.at(a=a) if law.has_a else model, initial=state).period for a in grid]
+        periods = [simulate(model.at(a=a) if "a" in law.names else model, state).period for a in grid]
         np.testing.assert_allclose(part["period"].values[0], periods, rtol=1e-8)
         assert np.isfinite(part["transverse_multiplier"].values[0]).tolist() == listed

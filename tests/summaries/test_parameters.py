@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import MotionKind, simulate
-from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
@@ -36,7 +35,7 @@ def test_each_point_has_the_run_of_its_parameters(tmp_path):
     assert dataset["lyapunov_exponent"].dims == ("coupling", "a", "exponent")
     for coupling in (0.5, 2.0):
         for a in (0.1, 0.4):
-            trajectory = simulate("nonlinear", a, PAIR, chain=Chain(2, coupling=coupling), **RUN)
+            trajectory = simulate(Model("nonlinear", a=a, chain=Chain(2, coupling=coupling)), PAIR, **RUN)
             point = dataset.sel(a=a, coupling=coupling)
             assert point["mean_distance"].item() == trajectory.mean_distance
             assert np.array_equal(point["lyapunov_exponent"], trajectory.lyapunov_exponent)
@@ -55,7 +54,7 @@ def test_v_is_a_scale_of_the_linearized_law(tmp_path):
     """In units of v the equations of motion contain only these positions and velocities."""
     datasets = {}
     for v in (0.05, 0.1, 0.2):
-        offset = Model(Chain(2), law_of("linearized", 0.1), v).chain.sliding_offset(1.0)
+        offset = Model("linearized", a=0.1, blocks=2, v=v).chain.sliding_offset(1.0)
         state = InitialState("pair", tuple(offset + v * np.array([1.0, -1.5])), (1.2 * v, 0.7 * v))
         datasets[v] = summary(tmp_path / f"{v}", "linearized", state, a=[0.05, 0.3], v=[v]).squeeze("v")
     for v in (0.05, 0.2):

@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff import ChainState, Model
 from burridge_knopoff.attractors.settings import SEARCH
 from burridge_knopoff.attractors.stored_returns import KnownAttractors
 from burridge_knopoff.basins.initial_phases import common_phases, inner_phases, oscillating_states
@@ -21,7 +21,7 @@ from burridge_knopoff.summaries.attractor_observables import AttractorObservable
 PHASES = PhaseSettings(
     amplitude=(0.05, 0.5), phase_difference=(30.0, 90.0, 180.0), inner_share=(0.0, 0.5), samples=5, seed=3
 )
-MODELS = [Model(Chain(3), law_of(law, 0.05)) for law in ("linearized", "nonlinear")]
+MODELS = [Model(law, a=0.05) for law in ("linearized", "nonlinear")]
 
 
 @pytest.fixture
@@ -49,7 +49,8 @@ def candidates(model):
 
 def test_states_are_counted_by_what_they_reach(ruled):
     parts = [
-        phases.one_law([candidates(model.at(a)) for a in (0.05, 0.08)], PHASES, SEARCH.label_limit) for model in MODELS
+        phases.one_law([candidates(model.at(a=a)) for a in (0.05, 0.08)], PHASES, SEARCH.label_limit)
+        for model in MODELS
     ]
     dataset = phases.merge(parts)
     assert dataset["branch"].dims == ("law", "a", "inner_share", "amplitude", "phase_difference", "state")

@@ -40,7 +40,12 @@ def test_the_points_of_a_study_in_order(grid):
     assert study.run_file(**POINT, solver="rk4") == "solvers/rk4/nonlinear/plus/a0.20.nc"
     assert all_points(study.of_laws(["nonlinear"])) == points[2:]
     model, _, _ = study.run_of(**POINT)
-    assert (model.v, model.law.a, model.law.name, model.chain.threshold) == (0.2, 0.2, "nonlinear", (1.0, 1.0, 0.9))
+    assert (model.v, model.law.parameters["a"], model.law.name, model.chain.threshold) == (
+        0.2,
+        0.2,
+        "nonlinear",
+        (1.0, 1.0, 0.9),
+    )
     for words in ("simulate --law nonlinear --a 0.2", "--initial plus", "--v 0.2", "--transient 10.0", "--window 20.0"):
         assert words in study.command(**POINT)
     numbers = {"position": [0.989, -0.993, -0.991], "velocity": [0.099, 0.1012, 0.1023]}

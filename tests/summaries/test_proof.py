@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Model
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.floquet import multipliers
@@ -15,7 +15,7 @@ from burridge_knopoff.periodic_orbits.flow import flow
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import bifurcations_of, critical_a
 from burridge_knopoff.summaries import proof
 
-PAPER, NONLINEAR = (Model(Chain(3), law_of(law, 0.0)) for law in ("linearized", "nonlinear"))
+PAPER, NONLINEAR = (Model(law, a=0.0) for law in ("linearized", "nonlinear"))
 TOLERANCE = 1e-13
 
 

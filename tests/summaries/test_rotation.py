@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import xarray
 
-from burridge_knopoff import Chain, ChainState, Model, MotionKind, law_of
+from burridge_knopoff import ChainState, Model, MotionKind
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.summaries.rotation import summarize
 
-MODEL = Model(Chain(3), law_of("linearized", 0.05))
+MODEL = Model("linearized", a=0.05)
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import simulate
+from burridge_knopoff import Model, simulate
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.provenance.bad_file import BadFile
 from burridge_knopoff.summaries.solvers import compare_solvers
@@ -22,7 +22,11 @@ def settings(solver):
 @pytest.fixture(scope="module")
 def runs():
     pairs = [(law, solver) for law in SOLVERS for solver in SOLVERS[law]]
-    return {(*pair, name): simulate(pair[0], a, "plus", **settings(pair[1])) for pair in pairs for name, a in A.items()}
+    return {
+        (*pair, name): simulate(Model(pair[0], a=a), "plus", **settings(pair[1]))
+        for pair in pairs
+        for name, a in A.items()
+    }
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, Settings, law_of, simulate
+from burridge_knopoff import Chain, InitialState, Model, Settings, simulate
 from burridge_knopoff.motion.frequency import leading_frequency
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.summaries.attractor_observables import follow_attractor
@@ -112,7 +112,9 @@ def test_the_amplitude_of_a_position_is_found_between_samples():
 
 def test_the_amplitude_is_that_of_dense_samples():
     coarse, dense = (
-        simulate("linearized", 0.0475, "plus", transient=100.0, window=60.0, batches=2, trajectory_sampling=interval)
+        simulate(
+            Model("linearized", a=0.0475), "plus", transient=100.0, window=60.0, batches=2, trajectory_sampling=interval
+        )
         for interval in (0.1, 1e-3)
     )
     found = position_amplitude(coarse.trajectory_time, coarse.position, coarse.velocity - 0.1)
@@ -138,7 +140,7 @@ def test_the_synchronized_orbit(tmp_path):
     """Its period and slip time come from Newton's method, without an event list or a window."""
     dataset = summarize(*points(tmp_path, "minus", 0.05))
     for law in ("linearized", "nonlinear"):
-        orbit = synchronized_orbits(Model(Chain(3), law_of(law, 0.0))).at(0.05)
+        orbit = synchronized_orbits(Model(law, a=0.0)).at(0.05)
         run = dataset.sel(law=law, initial="minus", a=0.05)
         assert run["cycle_time"].values == pytest.approx([orbit.period] * 3, rel=1e-9)
         assert (run["cycle_time_error"] < 1e-9).all()
@@ -201,9 +203,10 @@ def test_a_run_that_did_not_complete_has_no_values(tmp_path):
 def velocities(law, a, initial, **settings):
     """Return a run with all samples stored, and the same run as a study stores it."""
     settings = {"transient": 500.0, "window": 600.0, "batches": 2, "trajectory_sampling": 0.1, **settings}
-    run = simulate(law, a, initial, trajectory=settings["window"], **settings)
+    model = Model(law, a=a, blocks=5 if initial is FIVE else 3)
+    run = simulate(model, initial, trajectory=settings["window"], **settings)
     kept = {**vars(run), "trajectory_time": run.trajectory_time[:100], "velocity": run.velocity[:100]}
-    return run, kept, Model(Chain(run.velocity.shape[1]), law_of(law, a))
+    return run, kept, model
 
 
 @pytest.mark.parametrize(
@@ -248,8 +251,8 @@ def test_frequencies_are_those_of_the_same_motion_in_other_units():
     moved = InitialState("moved", np.array(state.position) / 400.0, np.array(state.velocity) / 20.0)
     frequencies, along_attractors = [], []
     for model, initial, scale, settings in (
-        (Model(chain, law_of("linearized", 0.08)), state, 1.0, {"transient": 500.0, "window": 600.0, "batches": 2}),
-        (Model(stiff, law_of("linearized", 1.6), 0.005), moved, 20.0, fast),
+        (Model("linearized", a=0.08, chain=chain), state, 1.0, {"transient": 500.0, "window": 600.0, "batches": 2}),
+        (Model("linearized", a=1.6, chain=stiff, v=0.005), moved, 20.0, fast),
     ):
         run = vars(simulate(model, initial=initial, settings=Settings(trajectory=0.5 / scale, **settings)))
         velocity, _, duration = long_velocity(run, model, settings["transient"])
@@ -271,7 +274,7 @@ def test_events_before_the_window_do_not_affect_frequencies():
 
 def test_a_block_at_rest_has_no_frequency():
     """The other block stops and starts."""
-    model = Model(Chain(2, coupling=0.01, threshold=(1.0, 20.0)), law_of("linearized", 0.1), 0.1)
+    model = Model("linearized", a=0.1, blocks=2, coupling=0.01, threshold=(1.0, 20.0), v=0.1)
     run = simulate(
         model,
         initial={"position": [0.0, 0.0], "velocity": [0.1, 0.0]},

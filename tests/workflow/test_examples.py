@@ -8,12 +8,10 @@ import pytest
 import xarray as xr
 
 from burridge_knopoff import (
-    Chain,
     InitialState,
     Model,
     MotionKind,
     decode_flags,
-    law_of,
     multipliers,
     open_study,
     record_events,
@@ -64,7 +62,7 @@ def test_velocity_is_a_scale_only_under_the_linearized_law(tmp_path, monkeypatch
     check_page("studies.md", "Another velocity of the driver")
     mean = open_result(tmp_path, "mean_distance")["mean_distance"]
     for initial in ("minus", "plus"):
-        run = simulate("linearized", 0.089, initial, transient=9000.0, window=3000.0)
+        run = simulate(Model("linearized", a=0.089), initial, transient=9000.0, window=3000.0)
         assert mean.sel(law="linearized", initial=initial, a=0.089).item() == pytest.approx(
             2.0 * run.mean_distance, rel=1e-6
         )
@@ -105,7 +103,7 @@ def test_slips_of_a_carlson_langer_chain_are_small_and_large(tmp_path):
     config = open_study(tmp_path / "results" / "carlson_langer").config
     rough = InitialState("rough", *(tuple(config["initial"]["rough"][key]) for key in ("position", "velocity")))
     for a in config["a"]:
-        model = Model(Chain(10, coupling=9.0, pulling=1.0), law_of("carlson_langer", a), config["v"])
+        model = Model("carlson_langer", a=a, blocks=10, coupling=9.0, pulling=1.0, v=config["v"])
         blocks = record_events(model, model.begin(rough, "tested"), 3000.0, begin=1000.0).blocks
         assert (blocks.min(), blocks.max()) == (1, 10)
 
@@ -132,7 +130,7 @@ def test_two_blocks_synchronize_only_where_the_synchronized_orbit_is_stable(tmp_
     synchronized = grid["run_kind"] == MotionKind.SYNCHRONIZED
     for coupling in (1.75, 2.5, 3.25, 4.0):
         row = synchronized.sel(coupling=coupling)
-        orbits = synchronized_orbits(Model(Chain(2, coupling=coupling), law_of("nonlinear", 0.3)))
+        orbits = synchronized_orbits(Model("nonlinear", a=0.3, blocks=2, coupling=coupling))
         assert row.any()
         for a in row["a"].values[row.values]:
             assert abs(multipliers(orbits.at(a)).transverse) < 1.0

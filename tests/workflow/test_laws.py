@@ -7,7 +7,7 @@ import netCDF4
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, Settings, law_of
+from burridge_knopoff import Chain, InitialState, Model, Settings
 from burridge_knopoff.cli import main
 from burridge_knopoff.running.simulation import run
 from tests.workflow.conftest import Study
@@ -69,7 +69,7 @@ def test_points_of_four_laws(laws, law):
     assert paths == [f"plus/a{a}.nc" for a in ("0.2000", "2.5000")]
     settings = Settings(transient=20.0, window=30.0, batches=2)
     for a in (0.2, 2.5):
-        model = Model(Chain(3), law_of(law, a, DESCRIPTIONS[law]))
+        model = Model({law: DESCRIPTIONS[law]}, a=a)
         check_point(laws / f"points/{law}/plus/a{a:.4f}.nc", model, PAPER_STATES["plus"], settings)
 
 
@@ -99,7 +99,7 @@ def test_a_ring_of_unequal_springs(tmp_path):
     study.ok("points")
     path = tmp_path / "results/ring/points/nonlinear/rough/a0.2000.nc"
     settings = Settings(transient=20.0, window=30.0, batches=2)
-    history = check_point(path, Model(UNEQUAL, law_of("nonlinear", 0.2)), ROUGH, settings)
+    history = check_point(path, Model("nonlinear", a=0.2, chain=UNEQUAL), ROUGH, settings)
     assert main([*shlex.split(history)[1:], "--out", str(tmp_path / "again.nc")]) == 0
     assert (tmp_path / "again.nc").read_bytes() == path.read_bytes()
     assert main(["check", str(tmp_path / "results/ring")]) == 0

@@ -13,8 +13,6 @@ from matplotlib.image import imread
 
 from burridge_knopoff import simulate
 from burridge_knopoff.check.leftovers import leftovers
-from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.study.load import load_study
@@ -81,7 +79,7 @@ def test_mean_distance_summary(results):
         assert dict(summary.sizes) == {"law": 2, "initial": 2, "a": 4, "level": 5}
         assert summary["a"].values.tolist() == GRID
         for law in ("linearized", "nonlinear"):
-            run = simulate(law, 0.2, "plus", **OPTIONS)
+            run = simulate(Model(law, a=0.2), "plus", **OPTIONS)
             point = summary.sel(law=law, initial="plus", a=0.2)
             assert point["mean_distance"].item() == run.mean_distance
             assert point["mean_distance_error"].item() == run.mean_distance_error
@@ -97,7 +95,7 @@ def test_bifurcation_summary(results):
     with xr.open_dataset(results / "summary" / "bifurcation_diagram.nc") as summary:
         assert summary["crossing_count"].attrs["sample_dimension"] == "crossing"
         assert summary["crossing_count"].sum() == summary.sizes["crossing"]
-        run = simulate("nonlinear", 0.22, "minus", **OPTIONS)
+        run = simulate(Model("nonlinear", a=0.22), "minus", **OPTIONS)
         for direction in (1, -1):
             a, velocity = section_points(summary, "nonlinear", "minus", direction)
             mine = run.crossing_velocity[run.crossing_direction == direction]
@@ -108,7 +106,7 @@ def test_bifurcation_summary(results):
 
 def test_lyapunov_summary(results):
     with xr.open_dataset(results / "summary" / "lyapunov.nc") as summary:
-        run = simulate("nonlinear", 0.22, "plus", **OPTIONS)
+        run = simulate(Model("nonlinear", a=0.22), "plus", **OPTIONS)
         point = summary.sel(law="nonlinear", initial="plus", a=0.22)
         assert point["lyapunov_exponent"].values.tolist() == run.lyapunov_exponent.tolist()
         assert point["lyapunov_error"].values.tolist() == run.lyapunov_error.tolist()
@@ -158,11 +156,11 @@ def test_phases_summary(results):
 
 def test_agreement_summary(results):
     with xr.open_dataset(results / "summary" / "agreement.nc") as agreement:
-        pair = [simulate(law, 0.2, "plus", **OPTIONS) for law in ("linearized", "nonlinear")]
+        pair = [simulate(Model(law, a=0.2), "plus", **OPTIONS) for law in ("linearized", "nonlinear")]
         point = agreement.sel(initial="plus", a=0.2)
         assert point["difference"].item() == pair[1].mean_distance - pair[0].mean_distance
         assert point["difference_error"].item() == np.hypot(*(run.mean_distance_error for run in pair))
-        whole = [simulate(law, 0.2, "plus", events="all", **OPTIONS) for law in ("linearized", "nonlinear")]
+        whole = [simulate(Model(law, a=0.2), "plus", events="all", **OPTIONS) for law in ("linearized", "nonlinear")]
         codes = [list(zip(run.event_block, run.event_kind, strict=True)) for run in whole]
         common = next(n for n, (one, two) in enumerate(zip(*codes, strict=False)) if one != two)
         assert point["event_order_count"].item() == common
@@ -182,14 +180,14 @@ def test_orbits_summary(results):
         assert (orbits["status"] == 0).all()
         assert orbits["critical_a"].values == pytest.approx([0.0869729046661, 0.0887172229712], abs=1e-12)
         for law in ("linearized", "nonlinear"):
-            orbit = synchronized_orbits(Model(Chain(3), law_of(law, 0.0))).at(0.2)
+            orbit = synchronized_orbits(Model(law, a=0.0)).at(0.2)
             assert orbits["period"].sel(law=law, a=0.2).item() == pytest.approx(orbit.period, abs=1e-12)
 
 
 def test_stick_slip_summary(results):
     with xr.open_dataset(results / "summary" / "stick_slip.nc") as cycles:
         assert dict(cycles.sizes) == {"law": 2, "initial": 2, "a": 4, "block": 3}
-        run = simulate("nonlinear", 0.22, "plus", events="all", **OPTIONS)
+        run = simulate(Model("nonlinear", a=0.22), "plus", events="all", **OPTIONS)
         point = cycles.sel(law="nonlinear", initial="plus", a=0.22)
         for block in (1, 2, 3):
             stops = run.event_time[(run.event_block == block) & (run.event_kind == 0) & (run.event_time >= 100.0)]
@@ -197,7 +195,7 @@ def test_stick_slip_summary(results):
             assert block_data["stop_rate"].item() == len(stops) / 200.0 > 0.0
             assert block_data["cycle_time"].item() == pytest.approx(np.diff(stops).mean(), rel=1e-12)
         # The whole window, except before the first stop and after the last event.
-        whole = simulate("nonlinear", 0.22, "plus", **{**OPTIONS, "trajectory": 200.0})
+        whole = simulate(Model("nonlinear", a=0.22), "plus", **{**OPTIONS, "trajectory": 200.0})
         expected = np.corrcoef(whole.velocity[:, 0], whole.velocity[:, 2])[0, 1]
         assert point["velocity_correlation"].item() == pytest.approx(expected, abs=5e-3)
 
@@ -213,7 +211,7 @@ def test_equilibrium_summary(results):
 def test_solvers_summary(results):
     with xr.open_dataset(results / "summary" / "solvers.nc") as solvers:
         assert solvers["a"].values.tolist() == [0.2]
-        run = simulate("nonlinear", 0.2, "minus", solver="rk4", step=0.01, **OPTIONS)
+        run = simulate(Model("nonlinear", a=0.2), "minus", solver="rk4", step=0.01, **OPTIONS)
         point = solvers.sel(law="nonlinear", solver="rk4", initial="minus", a=0.2)
         assert point["mean_distance"].item() == run.mean_distance
         assert point["step_count"].item() == run.step_count

@@ -91,7 +91,7 @@ class Attractor:
     Distances are the largest difference of a position or a velocity, in the units of `Model`.
 
     >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
-    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> model = Model("linearized", a=0.08)
     >>> settings = SearchSettings(samples=12, transient=500, window=500)
     >>> attractors, labels = find_attractors(model, settings)
     >>> attractors[1].symmetry.name, attractors[1].partner

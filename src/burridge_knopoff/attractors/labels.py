@@ -115,7 +115,7 @@ def label_states(
 
     >>> import numpy as np
     >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, label_states, law_of
-    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> model = Model("linearized", a=0.08)
     >>> settings = SearchSettings(samples=12, transient=500, window=500)
     >>> attractors, labels = find_attractors(model, settings)
     >>> position = np.array([[-0.989, -0.993, -0.991], [0.989, -0.993, -0.991]])
@@ -124,7 +124,7 @@ def label_states(
     >>> labels.tolist(), times.round().tolist()
     ([0, 1], [62.0, 355.0])
     """
-    instance_of(model, Model, "model")
+    instance_of(model, Model, "model").law.check_complete()
     attractors = attractors_of(model, attractors)
     position, velocity = real_array(position, "position"), real_array(velocity, "velocity")
     if not position.shape == velocity.shape == (*position.shape[:1], model.blocks):

@@ -19,6 +19,7 @@ from burridge_knopoff.attractors.labels import UNDETERMINED
 from burridge_knopoff.attractors.table import Row
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.laws.law import recorded_a
 from burridge_knopoff.messages import format_value, refusal
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.kind import MotionKind
@@ -69,7 +70,7 @@ def returns_of_law(models: Sequence[Model], rows: Sequence[Sequence[Row]], about
     blocks = models[0].blocks
     none = np.zeros((0, blocks))
     values = {
-        "a": [model.a for model, *_ in held],
+        "a": [recorded_a(model.law) for model, *_ in held],
         "slot": [slot for _, slot, _ in held],
         "return_count": [len(motion.returns) for *_, motion in held],
         "section_block": [motion.block for *_, motion in held],
@@ -106,7 +107,7 @@ def known_attractors(attractors: xarray.Dataset, returns: xarray.Dataset, model:
     properties = [
         ("law", model.law.name, attractors["law"].values.tolist()),
         ("law", model.law.name, [returns.attrs.get("law", model.law.name)]),
-        ("a", model.a, attractors["a"].values.tolist()),
+        ("a", recorded_a(model.law), attractors["a"].values.tolist()),
         ("v", model.v, [attractors.attrs["v"]]),
         ("contact", model.contact, [attractors.attrs["contact"]]),
         ("blocks", model.blocks, [attractors.sizes["block"]]),
@@ -114,11 +115,11 @@ def known_attractors(attractors: xarray.Dataset, returns: xarray.Dataset, model:
     for name, value, values in properties:
         if value not in values:
             raise refusal(f"model.{name}", value, f"{format_value(values)}, as in the files")
-    table = attractors.sel(law=model.law.name, a=model.a)
+    table = attractors.sel(law=model.law.name, a=recorded_a(model.law))
     slots = np.flatnonzero(table["branch"].values != UNDETERMINED)
     branch, side = table["branch"].values[slots], table["side"].values[slots]
     first = np.concatenate([[0], np.cumsum(returns["return_count"].values)])
-    entries = np.flatnonzero(returns["a"].values == model.a)
+    entries = np.flatnonzero(returns["a"].values == recorded_a(model.law))
     row_of = dict(zip(returns["slot"].values[entries].tolist(), entries.tolist(), strict=True))
 
     def states(slot: int) -> np.ndarray:

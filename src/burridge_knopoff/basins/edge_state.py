@@ -91,7 +91,7 @@ class EdgeState:
     Times are in units of 1/ω, states in those of `Model`.
 
     >>> from burridge_knopoff import Chain, Model, edge_state, find_attractors, law_of
-    >>> model = Model(Chain(3), law_of("linearized", 0.1))
+    >>> model = Model("linearized", a=0.1)
     >>> attractors, labels = find_attractors(model, samples=24, transient=1000, window=1000)
     >>> first, second = (item.motion.state() for item in attractors if item.symmetry.name == "ASYMMETRIC")
     >>> between = edge_state(model, first, second, attractors)
@@ -163,7 +163,7 @@ def edge_state(
     Source: J. D. Skufca, J. A. Yorke and B. Eckhardt, Phys. Rev. Lett. 96 (2006) 174101.
 
     >>> from burridge_knopoff import Chain, Model, edge_state, find_attractors, law_of
-    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> model = Model("linearized", a=0.08)
     >>> attractors, labels = find_attractors(model, starts=["plus"], samples=12, transient=500, window=500)
     >>> between = edge_state(model, attractors[0].motion.state(), attractors[1].motion.state(), attractors)
     >>> between.kind.words, abs(between.multiplier[:2]).round(3).tolist(), round(between.lifetime, 2)

@@ -16,6 +16,7 @@ import numpy as np
 from burridge_knopoff.attractors.capture_radius import embedded_orbits
 from burridge_knopoff.attractors.labels import UNDETERMINED, label_arrays
 from burridge_knopoff.attractors.search import Search
+from burridge_knopoff.laws.law import recorded_a
 from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.model.sampling import half_width, required_samples, sample_states, seed_at
 from burridge_knopoff.running.processes import ParallelMap
@@ -104,7 +105,7 @@ def further_states(labels: np.ndarray, width: float) -> int:
 def _draw_states(search: Search, start: str, first: int, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return `count` drawn states from number `first` on: x_i, U_i' and stuck blocks, each of shape (count, blocks)."""
     settings, model = search.settings, search.model
-    seed = seed_at(settings.seed, model.a)
+    seed = seed_at(settings.seed, recorded_a(model.law))
     drawn = sample_states(model.blocks, first + count, *settings.box(model), seed)
     position, velocity = (part[first:] for part in drawn)
     stuck = model.stuck_blocks(position, velocity, start)

@@ -14,6 +14,7 @@ from burridge_knopoff.catalogue.events import SlipEvents, record_events
 from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.dataset.point import STATUS_FLAG, model_attributes
 from burridge_knopoff.dataset.variables import Variable, global_attributes, xarray_variables
+from burridge_knopoff.laws.law import recorded_a
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.status import early_end
@@ -78,7 +79,7 @@ def catalogue_dataset(
     """
     import xarray
 
-    extra = {"a": model.a, "v": model.v, "slip_block": events.slip_block, "slip_distance": events.slip}
+    extra = {"a": recorded_a(model.law), "v": model.v, "slip_block": events.slip_block, "slip_distance": events.slip}
     extra["end_time"] = events.final.time
     variables = {**CATALOGUE_VARIABLES, **(PROFILE_VARIABLES if len(events.slip) else {})}
     values = {name: extra[name] if name in extra else getattr(events, name) for name in variables}

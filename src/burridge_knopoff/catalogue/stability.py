@@ -34,7 +34,7 @@ class EventExponents:
     status, end_time : how the run ended, and τ then
 
     >>> from burridge_knopoff import Chain, InitialState, Model, event_exponents, law_of
-    >>> model = Model(Chain(3, coupling=2), law_of("carlson_langer", 2.0), v=1.0)
+    >>> model = Model("carlson_langer", a=2.0, coupling=2, v=1.0)
     >>> start = model.begin(InitialState("rest", (-0.5, -0.95, -0.7), 0.0), "tested")
     >>> found = event_exponents(model, start, 100.0, count=3)
     >>> found.status.name, found.exponent.shape, float(found.exponent[2])
@@ -83,7 +83,7 @@ def event_exponents(
 
     >>> from burridge_knopoff import Chain, InitialState, Model, event_exponents, law_of
     >>> chain = Chain(2, coupling=3.5, pulling=1, threshold=(1.0, 2.25))
-    >>> model = Model(chain, law_of("carlson_langer", 0.0, {"sigma": 0.2}), v=1.0)
+    >>> model = Model("carlson_langer", a=0.0, sigma=0.2, chain=chain, v=1.0)
     >>> start = model.begin(InitialState("rest", (-0.5, -0.95), 0.0), "tested")
     >>> found = event_exponents(model, start, 500.0, begin=50.0)
     >>> bool(found.exponent[0] > 5 * found.error[0] > 0)
@@ -160,7 +160,7 @@ def event_multipliers(model: Model, state: ChainState, end: float, *, loading: s
     overflow, and where they have no linear growth, as `event_exponents` does.
 
     >>> from burridge_knopoff import Chain, InitialState, Model, event_multipliers, law_of
-    >>> model = Model(Chain(1, pulling=1), law_of("carlson_langer", 0.0, {"sigma": 0.2}), v=1.0)
+    >>> model = Model("carlson_langer", a=0.0, sigma=0.2, blocks=1, pulling=1, v=1.0)
     >>> start = model.begin(InitialState("rest", (-0.8,), 0.0), "tested")
     >>> event_multipliers(model, start, 0.5).tolist()
     [0j]

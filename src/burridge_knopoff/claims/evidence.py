@@ -15,7 +15,7 @@ from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_V, has_paper_numbers, initial_state
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.study.paper import PAPER_A, PAPER_LAWS, PAPER_TRANSIENT, PAPER_WINDOW
+from burridge_knopoff.study.paper import PAPER_LAWS, PAPER_TRANSIENT, PAPER_WINDOW
 
 if TYPE_CHECKING:
     import xarray
@@ -90,7 +90,7 @@ class Evidence:
             if law not in self.config["laws"]:
                 raise NotTestableError(f"the study has no {law} law")
             description = self.config["laws"][law]
-            if self.cached((law, str(description)), partial(law_of, law, PAPER_A, description)) != law_of(law, PAPER_A):
+            if self.cached((law, str(description)), partial(law_of, {law: description})) != law_of(law):
                 raise NotTestableError(f"the study's {law} law is not the paper's")
 
     def check_runs(self) -> None:
@@ -173,7 +173,7 @@ class Evidence:
         """Return −F'(v), the rate at which friction falls with velocity at the driver velocity, at values of a."""
         v = self.config["v"]
         key = law, v, a.tobytes()
-        return self.cached(key, lambda: np.array([-float(law_of(law, value).slope(v)) for value in a]))
+        return self.cached(key, lambda: np.array([-float(law_of(law, a=value).slope(v)) for value in a]))
 
     @property
     def own_convention(self) -> str:

@@ -68,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
     plane = {key: getattr(options, key) for key in (*PLANE, "start")}
     search = asdict(search_of(options)) | {"fraction_width": 0.1}
     motion = settings_of(MotionSettings, options)
-    basins, attractors = burridge_knopoff.basin_map(model, None, state, **plane, **search, motion=motion)
+    basins, attractors = burridge_knopoff.basin_map(model, state, **plane, **search, motion=motion)
     branch, side = (basins[name].values[0] for name in ("branch", "side"))
     slots = attractors.isel(law=0, a=0)
     reached = zip(slots["branch"].values.tolist(), slots["side"].values.tolist(), strict=True)

@@ -17,6 +17,7 @@ from burridge_knopoff.cli.options import (
     state_of,
 )
 from burridge_knopoff.cli.output import print_lines
+from burridge_knopoff.laws.law import recorded_a
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import EXIT_CODE, Status
@@ -55,7 +56,9 @@ def run(options: argparse.Namespace) -> int:
     state = state_of(options) or PAPER_STATES["minus"]
     model, settings = model_of(options, state), settings_of(CatalogueSettings, options)
     events = catalogue_of_run(model, state, settings, options.start, options.solver, options.step)
-    summary = summarize([events], [model.law.name], [model.a], settings.low, settings.high).isel(law=0, a=0)
+    summary = summarize([events], [model.law.name], [recorded_a(model.law)], settings.low, settings.high).isel(
+        law=0, a=0
+    )
     status = Status(summary["status"].item())
     count = summary["event_count"].item()
     print_lines(f"{model_line(model)}, from {state.name}: {status.name.lower()}", "")

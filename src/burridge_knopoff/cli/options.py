@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, TypeVar
@@ -236,7 +236,9 @@ def simulated_law(options: argparse.Namespace) -> Law:
         raise ValueError("--a: missing, expected a number of at least 0")
     kind = {"law": options.law} if options.formula is None else {"formula": options.formula}
     name = options.law_name or (options.law if options.formula is None else "formula")
-    return law_of(name, options.a, {**kind, **numbers})
+    if options.a is not None:
+        numbers["a"] = options.a
+    return law_of({name: {**kind, **numbers}})
 
 
 def model_of(options: argparse.Namespace, state: InitialState | None) -> Model:
@@ -250,7 +252,7 @@ def model_of(options: argparse.Namespace, state: InitialState | None) -> Model:
         if blocks is None:
             raise ValueError("blocks: missing, expected the number of blocks, which a random state does not fix")
     chain = Chain(blocks, **{key: getattr(options, key) for key in CHAIN_OPTIONS})
-    return Model(chain, simulated_law(options), options.v, options.contact)
+    return Model(simulated_law(options), chain=chain, v=options.v, contact=options.contact)
 
 
 def check_output(path: str) -> None:
@@ -270,7 +272,6 @@ def command_of(options: argparse.Namespace) -> str:
 
 def model_line(model: Model) -> str:
     """Return a line that describes a model."""
-    numbers: Mapping[str, float] = model.law.parameters
-    parameters = "".join(f", {name} = {value:g}" for name, value in numbers.items())
-    a = f", a = {model.a:g}" if model.law.has_a else ""
-    return f"{model.law.name} law{parameters}{a}, v = {model.v:g}, {model.blocks} block{'s' * (model.blocks > 1)}"
+    numbers = sorted(model.law.parameters.items(), key=lambda number: number[0] == "a")
+    parameters = "".join(f", {name} = {value:g}" for name, value in numbers)
+    return f"{model.law.name} law{parameters}, v = {model.v:g}, {model.blocks} block{'s' * (model.blocks > 1)}"

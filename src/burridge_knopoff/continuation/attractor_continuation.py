@@ -31,7 +31,7 @@ from burridge_knopoff.continuation.matching import DistanceMatcher, Matcher, out
 from burridge_knopoff.continuation.refinement import refine_searches
 from burridge_knopoff.continuation.settings import REFINEMENT, RefinementSettings
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.model.model import ChainState, Model, recorded_value
 from burridge_knopoff.motion.kind import CHAOS
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.running.processes import ParallelMap, parallel_map
@@ -137,7 +137,7 @@ def continue_attractors(
             all_searches += [*inner, right]
         grid = [all_searches.index(search) for search in searches]
         attractors = [search.attractors for search in all_searches]
-        values = [search.model.parameter(parameter) for search in all_searches]
+        values = [recorded_value(search.model, parameter) for search in all_searches]
         widest = max((values[high] - values[low] for low, high in pairwise(grid)), default=0.0)
         branch, side = branches(values, attractors, grid, REMEMBERED * widest, matcher)
         lives = _lifetimes_along_a(all_searches, branch, grid, pool)

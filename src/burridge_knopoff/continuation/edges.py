@@ -13,7 +13,8 @@ from burridge_knopoff.attractors.stored_returns import KnownAttractors
 from burridge_knopoff.basins.edge_state import MEAN_TOLERANCE, EdgeState, edge_state
 from burridge_knopoff.basins.settings import EdgeSettings
 from burridge_knopoff.continuation.followed_orbits import FOLLOWING, LEAST_A, SAME_PERIOD
-from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.laws.law import recorded_a
+from burridge_knopoff.model.model import ChainState, Model, at_recorded_a
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.motion.section_returns import visit
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow
@@ -43,7 +44,7 @@ class Edge:
     @property
     def a(self) -> float:
         """Friction parameter."""
-        return self.state.model.a
+        return recorded_a(self.state.model.law)
 
     def is_same(self, other: Edge) -> bool:
         """Return whether two edge states at one a are the same set, or mirror images of each other."""
@@ -152,7 +153,8 @@ def _segment(orbit: PeriodicOrbit, largest: float) -> list[BranchOrbit]:
         return points[-1].multipliers.unstable_count != 1
 
     down, up = (
-        follow(orbit, (LEAST_A, largest), FOLLOWING, upward=upward, is_complete=is_complete) for upward in (False, True)
+        follow(orbit, (LEAST_A, largest), FOLLOWING, upward=upward, is_complete=is_complete, parameter="a")
+        for upward in (False, True)
     )
     segment = [*down[:0:-1], *up]
     for point in segment:
@@ -188,7 +190,7 @@ def approach(model: Model, state: ChainState, edges: Sequence[Edge], branch: int
     Raises ValueError, one line, for an edge state of a model that differs in more than a.
     """
     for index, edge in enumerate(edges):
-        model.at(edge.a).check_same(edge.state.model, f"edges[{index}].model")
+        at_recorded_a(model, edge.a).check_same(edge.state.model, f"edges[{index}].model")
     section = visit(model, state, 0.0, APPROACH)
     if section is None:
         return Approach()
@@ -199,7 +201,7 @@ def approach(model: Model, state: ChainState, edges: Sequence[Edge], branch: int
         if branch not in edge.branch or edge.state.orbit is None:
             continue
         try:
-            orbit = KnownOrbits(edge.state.orbit).at(model.a)
+            orbit = KnownOrbits(edge.state.orbit).at(recorded_a(model.law))
         except OrbitError:
             continue
         distance = min(

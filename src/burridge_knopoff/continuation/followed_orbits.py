@@ -13,7 +13,7 @@ import xarray
 
 from burridge_knopoff.continuation.branch_changes import BranchChange, is_followed
 from burridge_knopoff.continuation.cached import CLASSES
-from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.model import Model, at_recorded_a
 from burridge_knopoff.motion.limit_cycle import limit_cycle
 from burridge_knopoff.motion.section_returns import state_of
 from burridge_knopoff.periodic_orbits.branch_segment import BranchSegment, HalfBranch, follow_half_branch
@@ -89,7 +89,7 @@ def follow_orbits(
     """
     largest = float(np.nanmax(table["a"].values))
     places = _places(table, changes)
-    models = [model.at(float(table["a"].values[k])) for k, _ in places]
+    models = [at_recorded_a(model, float(table["a"].values[k])) for k, _ in places]
     states = ([table[name].values[place] for place in places] for name in ("position", "velocity"))
     followed = FollowedOrbits()
     with parallel_map(processes, folder, CLASSES) as pool:

@@ -12,7 +12,7 @@ from burridge_knopoff.attractors.capture_radius import PERTURBATION_GROUP
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.continuation.matching import Matcher, Outline, outlines
 from burridge_knopoff.continuation.settings import RefinementSettings
-from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.model import Model, recorded_value
 from burridge_knopoff.running.processes import ParallelMap, Span
 
 #: Indices of the attractors at both ends of a gap that differ.
@@ -89,7 +89,7 @@ def refine_searches(
         halves,
         span,
     )
-    return [sorted(inner, key=lambda search: search.model.parameter(parameter)) for inner in middles]
+    return [sorted(inner, key=lambda search: recorded_value(search.model, parameter)) for inner in middles]
 
 
 def _compare(left: Search, right: Search, matcher: Matcher) -> Differing:

@@ -26,6 +26,8 @@ from burridge_knopoff.continuation.branch_changes import slots_of_branches
 from burridge_knopoff.continuation.cached import CLASSES
 from burridge_knopoff.continuation.followed_orbits import FollowedOrbits
 from burridge_knopoff.continuation.matching import SAME_SET
+from burridge_knopoff.laws.law import recorded_a
+from burridge_knopoff.model.model import at_recorded_a
 from burridge_knopoff.motion.kind import REGULAR, MotionKind
 from burridge_knopoff.motion.rotation import mean_rotation
 from burridge_knopoff.motion.section_returns import Returns, visit
@@ -183,12 +185,12 @@ def _points(orbit: PeriodicOrbit, far: float, settings: SearchSettings, motion: 
 
     It ends early where the motion leaves the neighbourhood of the set at the value before.
     """
-    model, near = orbit.model, orbit.model.a
+    model, near = orbit.model, recorded_a(orbit.model.law)
     before = visit(model, orbit.reference, 0.0, settings.window)
     state, generator = orbit.reference, np.random.default_rng(settings.seed)
     points: list[TorusPoint] = []
     for a in near + (far - near) * np.arange(1, VALUES + 1) / (VALUES + 1):
-        search = Convergence(model.at(float(a)), settings, motion)
+        search = Convergence(at_recorded_a(model, float(a)), settings, motion)
         section = search.settle(perturb(state, SYMMETRY_PUSH * search.resolution, generator))
         measured = search.measure(section) if section is not None else None
         if measured is None or before is None:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 def without_a(laws: Sequence[Law]) -> dict[str, str]:
     """Return what tells `has_a` that none of the laws of a file contains a: the formula of the first."""
-    return {} if any(law.has_a for law in laws) else {"law_formula": laws[0].formula}
+    return {} if any("a" in law.names for law in laws) else {"law_formula": laws[0].formula}
 
 
 def has_a(attributes: Mapping[str, Any]) -> bool:

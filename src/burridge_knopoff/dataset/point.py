@@ -25,6 +25,7 @@ from burridge_knopoff.dataset.variables import (
     write_variables,
     xarray_variables,
 )
+from burridge_knopoff.laws.law import recorded_a
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import ChainState, Model
@@ -142,7 +143,7 @@ def point_values(trajectory: Trajectory) -> dict[str, Any]:
     settings = trajectory.settings
     width = settings.window / settings.batches
     special = {
-        "a": trajectory.model.a,
+        "a": recorded_a(trajectory.model.law),
         "v": trajectory.model.v,
         "block": np.arange(1, trajectory.model.blocks + 1),
         "initial_position": trajectory.initial.position,
@@ -191,7 +192,7 @@ def model_attributes(model: Model) -> dict[str, Any]:
     return {
         "law": model.law.name,
         "law_formula": model.law.formula,
-        **{f"law_{key}": value for key, value in model.law.parameters.items()},
+        **{f"law_{key}": value for key, value in model.law.parameters.items() if key != "a"},
         **{f"chain_{key}": value for key in CHAIN_OPTIONS if (value := getattr(model.chain, key)) is not None},
     }
 

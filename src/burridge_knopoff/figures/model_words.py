@@ -43,7 +43,8 @@ def model_title(model: Model, axes: Collection[str] = ()) -> str:
 
     axes : names of the parameters on the axes of the picture, which are left out
     """
-    numbers = {**({"a": model.a} if model.law.has_a else {}), "v": model.v, **model.law.parameters}
+    law = dict(model.law.parameters)
+    numbers = {**{key: law.pop(key) for key in ("a",) if key in law}, "v": model.v, **law}
     numbers |= {name: getattr(model.chain, name) for name in CHAIN_PARAMETERS}
     return ", ".join([f"{model.law.name} law", *_words(numbers, [model.law.defaults], axes)])
 

@@ -26,51 +26,53 @@ LAWS: Mapping[str, type[Law]] = {
 }
 
 
-#: A law as in a config, see `law_of`.
-Description = Mapping[str, Any]
+#: A law: a `Law`, the name of a built-in law, or a description as in a config.
+GivenLaw = Law | str | Mapping[str, Any]
 
 
-def law_of(
-    name: str | Description, a: float | None = None, description: Description | None = None, **parameters: Any
-) -> Law:
-    """Return a friction law by name, at a value of a, which a formula without a does not need.
+def law_of(law: GivenLaw, **parameters: Any) -> Law:
+    """Return a friction law, with these values of its parameters.
 
-    name : or, in its place, the description of a law without a name of its own
-    parameters : those of the law other than a, such as sigma
-    description : the same as a mapping, as in a config: for a law given by a formula, `formula` and its parameters; for
-        a built-in law, its parameters, and `law`, the name of the built-in law, if `name` is a different one
+    law : a `Law`; the name of a built-in law; or a description as in a config: {"formula": …} or {"law": NAME} with
+        values of parameters, or with a name of its own, {NAME: {"formula": …}}
 
-    Raises ValueError if there is no such law, or if the law does not accept these parameters.
+    Raises ValueError, one line, if there is no such law, or if the law does not accept these parameters.
 
     The built-in laws are linearized and nonlinear (the paper's), carlson_langer, exponential and stribeck. Formulas and
-    sources are in the modules of `burridge_knopoff.laws`.
+    sources are in the modules of `burridge_knopoff.laws`. A parameter without a default, such as a, may be left open.
 
     >>> from burridge_knopoff import law_of
-    >>> law_of("carlson_langer", 0.5, sigma=0.02)
+    >>> law_of("carlson_langer", a=0.5, sigma=0.02)
     <law carlson_langer: (1 - sigma)/(1 + a*u/(1 - sigma)), a=0.5, sigma=0.02>
-    >>> law_of("mine", 0.5, formula="(1 - drop)*exp(-a*u)", drop=0.02).name
+    >>> law_of({"mine": {"formula": "(1 - drop)*exp(-a*u)", "drop": 0.02}}, a=0.5).name
     'mine'
-    >>> law_of({"formula": "1/(1 + a*u)"}, 0.5)
-    <law formula: 1/(1 + a*u), a=0.5>
+    >>> law_of({"formula": "1/(1 + u/10)"})
+    <law formula: 1/(1 + u/10)>
     """
-    if not isinstance(description, Mapping | None):
-        raise refusal("description", description, "a mapping with the parameters of a law, and its formula if any")
-    if isinstance(name, Mapping):
-        return law_of(name.get("law", "formula"), a, {**name, **(description or {})}, **parameters)
-    values = dict(description or {})
+    if isinstance(law, Law):
+        return law.at(**parameters) if parameters else law
+    description: Mapping[str, Any] = {"law": law} if isinstance(law, str) else law
+    if not isinstance(description, Mapping):
+        raise unknown_law("law", law, '{{"formula": "{}"}}')
+    values, name = dict(description), None
+    if len(values) == 1 and isinstance(next(iter(values.values())), Mapping):
+        ((name, values),) = values.items()
+        values = dict(values)
+        if not values.keys() & {"law", "formula"}:
+            values["law"] = name
+    if "name" in values:
+        raise ValueError(f"{name or 'law'}.name: not a parameter of a law")
     for key in values.keys() & parameters.keys():
         raise ValueError(f"{key}: got two values, expected one")
     values |= parameters
-    if "name" in values:
-        raise ValueError(f"{name}.name: not a parameter of a law")
     if "formula" in values:
         if "law" in values:
-            raise ValueError(f"{name}: got law and formula, expected one of them")
-        return FormulaLaw(a, values.pop("formula"), name=name, **values)
-    kind = values.pop("law", name)
+            raise ValueError(f"{name or 'law'}: got law and formula, expected one of them")
+        return FormulaLaw(values.pop("formula"), name=name or "formula", **values)
+    kind = values.pop("law", None)
     if not isinstance(kind, str) or kind not in LAWS:
         raise unknown_law("law", kind, '{{"formula": "{}"}}')
-    return LAWS[kind](a, name=name, **values)
+    return LAWS[kind](name=name or kind, **values)
 
 
 def unknown_law(key: str, name: Any, way: str = 'NAME: {{formula: "{}"}}') -> ValueError:

@@ -36,7 +36,7 @@ def compile_formula(
 ) -> Tape:
     """Return the tape of a formula in the speed u, or in another variable.
 
-    values : values of all other names, for a law including `a`; longest : most characters of the formula
+    values : values of all other names; longest : most characters of the formula
     Raises FormulaError for syntax that is not allowed in a formula, for more characters, and for names without a value.
     """
     tree, builder = _tree(formula, longest), Builder()
@@ -54,6 +54,16 @@ def formula_value(formula: str, values: Mapping[str, float]) -> float:
         return float(_Reader(Builder(), formula.strip(), names).read(_tree(formula, MOST_CHARACTERS)).shift)
     except (OverflowError, ZeroDivisionError):
         raise FormulaError("a term is not finite") from None
+
+
+@lru_cache(maxsize=64)
+def check_formula(formula: str, longest: int = MOST_CHARACTERS) -> None:
+    """Check the syntax of a formula, for any values of its names; raises FormulaError as `compile_formula` does."""
+    names = dict.fromkeys(formula_names(formula), SPEED)
+    try:
+        _Reader(Builder(), formula.strip(), names).read(_tree(formula, longest))
+    except (OverflowError, ZeroDivisionError):
+        raise FormulaError("a constant term is not finite") from None
 
 
 @lru_cache(maxsize=64)

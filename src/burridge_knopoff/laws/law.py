@@ -1,4 +1,4 @@
-"""Friction laws: a formula for Φ in the slip speed and the friction parameter a.
+"""Friction laws: a formula for Φ in the slip speed and numbers such as the friction parameter a.
 
 Everything else follows from the formula: the slope, the Taylor series of both in the kernel, the start of a slip, and
 the least friction. A new law is a class with a formula, or a formula in a config.
@@ -15,9 +15,9 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from burridge_knopoff.laws.formula import MOST_CHARACTERS, FormulaError, compile_formula, formula_names
+from burridge_knopoff.laws.formula import MOST_CHARACTERS, FormulaError, check_formula, compile_formula, formula_names
 from burridge_knopoff.laws.tape import Tape
-from burridge_knopoff.messages import format_value, full_key, refusal
+from burridge_knopoff.messages import cut, format_value, full_key, refusal
 from burridge_knopoff.values import Unchanging, instance_of, real_array, real_number
 
 #: A law must be analytic up to this speed. Blocks stay slower if springs and thresholds are about 1.
@@ -36,70 +36,75 @@ _FRACTIONS = np.linspace(0.0, 1.0, SAMPLES + 1)
 class Law(Unchanging):
     """Base class of all laws: friction Φ on a block slipping at speed U', as a fraction of its static friction.
 
-    a : friction parameter, at least 0; None for a formula without a
     name : name of the law in a study and in its files; by default the name of its module
-    parameters : values of the other parameters in the formula; by default those of the class
+    parameters : values of the numbers in the formula, such as a; by default those of the class
 
-    Raises ValueError for a parameter that is not finite, if the friction Φ(0) at the start of a slip is not above 0 and
-    at most 1, and if Φ is not analytic and finite for all speeds up to MAX_SPEED.
+    A number without a default may be left open: it is `missing`, and what needs it says so. Raises ValueError, one
+    line, for a parameter that is not finite, for a below 0, if the friction Φ(0) at the start of a slip is not above 0
+    and at most 1, and if Φ is not analytic and finite for all speeds up to MAX_SPEED.
 
-    A law is a function of the speed, in units of ωF(0)/k; `at` returns the law at another a. `law_of` returns the
-    built-in laws, whose modules give the sources. A new law is a `FormulaLaw`, or a subclass with `formula` and `text`.
+    A law is a function of the speed, in units of ωF(0)/k; `at` returns the law at other values of its parameters.
+    `law_of` returns the built-in laws, whose modules give the sources. A new law is a `FormulaLaw`, or a subclass with
+    `formula` and `text`.
 
     >>> from burridge_knopoff import Law, law_of
-    >>> law = law_of("nonlinear", 0.25)
+    >>> law = law_of("nonlinear", a=0.25)
     >>> isinstance(law, Law), law([0.0, 1.0, 4.0]).tolist(), float(law.slope(0.0))
     (True, [1.0, 0.8, 0.5], -0.25)
-    >>> law.at(0.5).a
-    0.5
+    >>> law.at(a=0.5).parameters["a"], law_of("nonlinear").missing
+    (0.5, ('a',))
     """
 
-    #: Φ in the syntax of a config; u is U', a the friction parameter.
+    #: Φ in the syntax of a config; u is U'.
     formula: str
     #: The same as it is printed, in plain text.
     text: str
-    #: The parameters in the formula other than a, with their defaults.
+    #: Defaults of the parameters in the formula, of those that have one.
     defaults: ClassVar[Mapping[str, float]] = {}
     #: Maximum length of the formula in characters.
     max_length: ClassVar[int] = MOST_CHARACTERS
 
-    def __init__(self, a: float | None = None, /, *, name: str = "", **parameters: float) -> None:
+    def __init__(self, /, *, name: str = "", **parameters: float) -> None:
         self.name = name or type(self).__module__.rpartition(".")[2]
-        for key in parameters.keys() - self.defaults.keys():
-            allowed = " | ".join(self.defaults) or "none"
-            raise ValueError(f"{full_key(self.name, key)}: not a parameter of this law, expected {allowed}")
-        self._set(a, {**self.defaults, **parameters})
+        self._set({**self.defaults, **parameters})
 
-    def _set(self, a: float | None, parameters: Mapping[str, float]) -> None:
+    def _set(self, parameters: Mapping[str, float]) -> None:
         for key in ("formula", "text"):
             if key not in vars(self) and not hasattr(type(self), key):
                 raise ValueError(f"{self.name}.{key}: missing, expected a text")
-        names = formula_names(self.formula)
-        if a is None and "a" not in names:
-            a = 0.0
-        for key in parameters:
-            if key in ("a", "u"):
-                place = full_key(self.name, key)
-                raise ValueError(f"{place}: got a reserved name, expected another name for the parameter")
+        if "u" in parameters:
+            place = full_key(self.name, "u")
+            raise ValueError(f"{place}: got a reserved name, expected another name for the parameter")
+        try:
+            check_formula(self.formula, self.max_length)
+        except FormulaError as error:
+            raise self._refusal(error, parameters.get("a")) from None
+        names = formula_names(self.formula) - {"u"}
+        for key, value in parameters.items():
             if key not in names:
-                raise ValueError(f"{full_key(self.name, key)}: not in the formula {format_value(self.formula)}")
-        for key, value in {"a": a, **parameters}.items():
+                allowed = " | ".join(map(cut, sorted(names))) or "none"
+                raise ValueError(f"{full_key(self.name, key)}: not a parameter of this law, expected {allowed}")
             if not abs(real_number(value)) < 1e300:
                 raise refusal(key, value, "a finite number")
-        if real_number(a) < 0.0:
-            raise refusal("a", a, "0 or more")
+        if real_number(parameters.get("a", 0.0)) < 0.0:
+            raise refusal("a", parameters["a"], "0 or more")
+        #: Names of the parameters that have no value, in alphabetical order.
+        self.missing = tuple(sorted(names - parameters.keys()))
         # Adding 0 turns -0.0 into 0.0: equal parameters must give equal files.
-        self.a = real_number(a) + 0.0
-        self._parameters = {key: real_number(value) + 0.0 for key, value in parameters.items()}
+        values = {key: real_number(value) + 0.0 for key, value in parameters.items()}
+        self._parameters = {**({"a": values["a"]} if "a" in values else {}), **values}
         try:
             self._check()
         except FormulaError as error:
-            at = f" at a = {self.a:g}" if self.has_a else ""
-            raise ValueError(
-                f"{self.name}: got {format_value(self.formula)}{at}, expected a friction law: {error}"
-            ) from None
+            raise self._refusal(error, values.get("a")) from None
+
+    def _refusal(self, error: FormulaError, a: float | None) -> ValueError:
+        at = "" if a is None else f" at a = {a:g}"
+        return ValueError(f"{self.name}: got {format_value(self.formula)}{at}, expected a friction law: {error}")
 
     def _check(self) -> None:
+        if self.missing:
+            return
         if not self.tape.is_analytic(0.0, MAX_SPEED):
             raise FormulaError(f"the formula is not analytic and finite for all speeds u from 0 to {MAX_SPEED:g}")
         start = float(self(0.0))
@@ -109,7 +114,7 @@ class Law(Unchanging):
     def __setattr__(self, name: str, value: object) -> None:
         # Values derived from the parameters are cached.
         if "_parameters" in vars(self):
-            raise AttributeError(f"{name}: a law cannot be changed; `at` returns the law at another a")
+            raise AttributeError(f"{name}: a law cannot be changed; `at` returns the law at other values")
         super().__setattr__(name, value)
 
     def __eq__(self, other: object) -> bool:
@@ -120,40 +125,46 @@ class Law(Unchanging):
 
     def __repr__(self) -> str:
         parameters = "".join(f", {key}={value!r}" for key, value in self.parameters.items())
-        a = f", a={self.a!r}" if self.has_a else ""
-        return f"<law {self.name}: {self.formula}{a}{parameters}>"
-
-    @property
-    def has_a(self) -> bool:
-        """Whether the formula contains the friction parameter a; `a` is without meaning if not, and mostly 0."""
-        return "a" in formula_names(self.formula)
+        return f"<law {self.name}: {self.formula}{parameters}>"
 
     @property
     def parameters(self) -> Mapping[str, float]:
-        """Values of the parameters in the formula other than `a`."""
+        """Values of the parameters in the formula, of those that have one; a is the first."""
         return MappingProxyType(self._parameters)
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all parameters in the formula; a is the first."""
+        return tuple(sorted([*self._parameters, *self.missing], key=lambda name: name != "a"))
+
+    @property
     def words(self) -> str:
-        """The law as it is printed, with its parameters: «Φ = (1 − σ)/(1 + aU′/(1 − σ)), σ = 0.01»."""
-        return ", ".join([self.text, *(f"{_greek_letter(key)} = {value:g}" for key, value in self.parameters.items())])
+        """The law as it is printed, with its parameters but a: «Φ = (1 − σ)/(1 + aU′/(1 − σ)), σ = 0.01»."""
+        others = ((key, value) for key, value in self.parameters.items() if key != "a")
+        return ", ".join([self.text, *(f"{_greek_letter(key)} = {value:g}" for key, value in others)])
 
     @property
     def _key(self) -> tuple[object, ...]:
-        return self.name, self.formula, self.a, tuple(self.parameters.items())
+        return self.name, self.formula, tuple(self.parameters.items())
 
-    def at(self, a: float | None = None, /, **parameters: float) -> Self:
-        """Return the same law at another a, or with other values of some of its parameters."""
+    def at(self, **parameters: float) -> Self:
+        """Return the same law with other values of some of its parameters."""
         other = object.__new__(type(self))
         other.name, other.formula = self.name, self.formula
-        other._set(self.a if a is None else a, {**self.parameters, **parameters})
+        other._set({**self.parameters, **parameters})
         return other
+
+    def check_complete(self, *supplied: str) -> None:
+        """Raise ValueError, one line, if a parameter has no value and is not one of those that are supplied later."""
+        for key in self.missing:
+            if key not in supplied:
+                raise ValueError(f"{key}: missing, expected a number: the law {self.name} contains it")
 
     @cached_property
     def tape(self) -> Tape:
         """The operations that compute Φ and its slope from a speed."""
-        values = {**({"a": self.a} if self.has_a else {}), **self.parameters}
-        return compile_formula(self.formula, values, longest=self.max_length)
+        self.check_complete()
+        return compile_formula(self.formula, self.parameters, longest=self.max_length)
 
     def __call__(self, speed: ArrayLike) -> np.ndarray:
         """Return Φ at speeds U', elementwise; they are below 0 only for blocks with negative weakening."""
@@ -200,29 +211,27 @@ class Law(Unchanging):
 
 
 class FormulaLaw(Law):
-    """A law given by its formula, with a name and values for all names in the formula except `a` and `u`.
-
-    a : None if the formula has no a
+    """A law given by its formula, with a name and the values of the names in the formula except `u`.
 
     Raises ValueError as `Law` does, and for syntax that is not allowed in a formula.
 
     A formula may contain numbers, parentheses, `+`, `-`, `*`, `/`, `**`, exp, log, sqrt and tanh; u is the speed U'.
 
     >>> from burridge_knopoff import FormulaLaw
-    >>> law = FormulaLaw(0.04, "1/(1 + a*u)**p", name="power", p=2.0)
+    >>> law = FormulaLaw("1/(1 + a*u)**p", name="power", a=0.04, p=2.0)
     >>> law, round(float(law(5.0)), 4)
     (<law power: 1/(1 + a*u)**p, a=0.04, p=2.0>, 0.6944)
     """
 
-    def __init__(self, a: float | None, formula: str, /, *, name: str = "formula", **parameters: float) -> None:
+    def __init__(self, formula: str, /, *, name: str = "formula", **parameters: float) -> None:
         self.name = name
         self.formula = instance_of(formula, str, "formula")
-        self._set(a, parameters)
+        self._set(parameters)
 
     @property
     def text(self) -> str:  # type: ignore[override]
-        """The formula with the values of its parameters."""
-        parameters = "".join(f", {key} = {value:g}" for key, value in self.parameters.items())
+        """The formula with the values of its parameters but a."""
+        parameters = "".join(f", {key} = {value:g}" for key, value in self.parameters.items() if key != "a")
         return f"Φ = {self.formula}, u = U′{parameters}"
 
     @property
@@ -241,3 +250,9 @@ def _greek_letter(name: str) -> str:
         return unicodedata.lookup(f"GREEK SMALL LETTER {name}")
     except KeyError:
         return name
+
+
+def recorded_a(law: Law) -> float:
+    """Return a of a law as files and their names have it: 0 for a law without a."""
+    law.check_complete()
+    return law.parameters.get("a", 0.0)

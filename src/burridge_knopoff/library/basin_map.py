@@ -8,35 +8,28 @@ from typing import TYPE_CHECKING, Any
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.dataset.point import model_attributes
-from burridge_knopoff.library.keyword_settings import settings_of, show_settings, takes_model
-from burridge_knopoff.library.model_forms import GivenLaw, model_and_settings
-from burridge_knopoff.library.state_forms import Initial, initial_numbers, state_blocks
-from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.library.keyword_settings import settings_of, show_settings
+from burridge_knopoff.library.state_forms import Initial, initial_numbers
 from burridge_knopoff.model.initial import OWN, InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.sampling import POSITIONS, VELOCITIES
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.running.cores import chosen_cores
+from burridge_knopoff.values import instance_of
 
 if TYPE_CHECKING:
     import xarray
 
 
-@takes_model
 @show_settings(SearchSettings)
 def basin_map(
-    law: Model | GivenLaw,
-    a: Any = None,
+    model: Model,
     initial: Initial | None = None,
     *,
     pixels: int = 64,
     first_position: Sequence[float] = POSITIONS,
     last_position: Sequence[float] = POSITIONS,
     first_velocity: Sequence[float | str] = VELOCITIES,
-    chain: Chain | None = None,
-    blocks: int | None = None,
-    v: float | None = None,
-    contact: str | None = None,
     start: str = "moving",
     samples: int = 100,
     seed: int = 1,
@@ -46,7 +39,6 @@ def basin_map(
 ) -> tuple[xarray.Dataset, xarray.Dataset]:
     """Return a basin map of one model and its attractors, in the form of `basins.nc` and `attractors.nc`.
 
-    law, a, chain, blocks, v, contact : as for `simulate`
     initial : the positions and velocities except U_1(0) and U_N(0), in any form that `simulate` takes; by default
         minus, which has three blocks. The map of one block, over U_1(0) and U_1'(0), needs none
     start : moving or tested, see `Model.begin`
@@ -55,15 +47,16 @@ def basin_map(
     samples, seed : initial states of the search for attractors; an attractor that none of them reaches is not found,
         and its basin is undetermined (−1)
     cores : number of cores, by default all; the map does not depend on it
-    by_name : other settings of `SearchSettings`, and parameters of the model as for `simulate`
+    by_name : other settings of `SearchSettings`
     motion : how kinds of motion are classified
 
     The map `branch` of the first Dataset has shape (1, pixels, pixels); each row has one U_N(0), or U_1'(0). The
     uncertainty exponent is NaN, since no pairs of states are followed. Raises ValueError, one line, for a wrong
     argument, and if no attractor is found.
 
-    >>> from burridge_knopoff import basin_map
-    >>> basins, attractors = basin_map("linearized", 0.08, pixels=4, samples=12, transient=500, window=500)
+    >>> from burridge_knopoff import Model, basin_map
+    >>> model = Model("linearized", a=0.08)
+    >>> basins, attractors = basin_map(model, pixels=4, samples=12, transient=500, window=500)
     >>> basins.branch.shape, basins.undetermined_count.item()
     ((1, 4, 4), 2)
     >>> attractors.mean_distance.sel(law="linearized", a=0.08).values.round(3).tolist()
@@ -72,22 +65,12 @@ def basin_map(
     from burridge_knopoff.summaries import basins as basin_summary
     from burridge_knopoff.summaries.multistability import coexisting_attractors
 
-    model, search = model_and_settings(
-        SearchSettings,
-        law,
-        a,
-        by_name,
-        v=v,
-        chain=chain,
-        blocks=blocks,
-        contact=contact,
-        state_blocks=3 if initial is None else state_blocks(initial),
-    )
+    instance_of(model, Model, "model")
     if initial is None:
         initial = InitialState(OWN, 0.0, 0.0) if model.blocks == 1 else "minus"
     state = initial_numbers(model, initial)
     # The map itself shows the basin fractions.
-    options = {"samples": samples, "seed": seed, "fraction_width": 0.1, **search}
+    options = {"samples": samples, "seed": seed, "fraction_width": 0.1, **by_name}
     settings = settings_of(SearchSettings, None, options)
     plane = BasinSettings(
         pixels=pixels,

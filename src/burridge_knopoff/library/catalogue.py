@@ -13,6 +13,7 @@ from burridge_knopoff.catalogue.batches import batch_index, batch_sums, rate_err
 from burridge_knopoff.catalogue.distribution import fit_range
 from burridge_knopoff.catalogue.events import SlipEvents
 from burridge_knopoff.catalogue.slope import Slope, fit_slope
+from burridge_knopoff.laws.law import recorded_a
 from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.status import Status, early_end
@@ -31,7 +32,7 @@ class Catalogue(SlipEvents):
     begin_time, end_time : ends of the catalogue on the loading clock; loading, solver : of the run
 
     >>> from burridge_knopoff import Chain, InitialState, Model, law_of, record_events
-    >>> model = Model(Chain(20, coupling=9, pulling=1), law_of("carlson_langer", 3.0), v=0.01)
+    >>> model = Model("carlson_langer", a=3.0, blocks=20, coupling=9, pulling=1, v=0.01)
     >>> rough = {"random": "uniform", "low": -1.0, "high": -0.9, "seed": 1}
     >>> events = record_events(model, model.begin(InitialState("rough", rough, 0.0), "tested"), 500.0, begin=100.0)
     >>> events.slope().count > 10
@@ -114,7 +115,9 @@ class Catalogue(SlipEvents):
         from burridge_knopoff.figures.slip_events import draw_run
         from burridge_knopoff.summaries.catalogue import summarize
 
-        return draw_run(summarize([self.to_dataset()], [self.model.law.name], [self.model.a]).isel(law=0, a=0))
+        return draw_run(
+            summarize([self.to_dataset()], [self.model.law.name], [recorded_a(self.model.law)]).isel(law=0, a=0)
+        )
 
     def to_dataset(self) -> xarray.Dataset:
         """Return the catalogue as an xarray Dataset, in the form of the catalogue files of a study."""
@@ -150,7 +153,7 @@ def record_events(
     allow.
 
     >>> from burridge_knopoff import Chain, InitialState, Model, law_of, record_events
-    >>> model = Model(Chain(1, pulling=1), law_of("linearized", 0.1), v=0.01)
+    >>> model = Model("linearized", a=0.1, blocks=1, pulling=1, v=0.01)
     >>> start = model.begin(InitialState("own", (-0.9,), (0.0,)), "tested")
     >>> events = record_events(model, start, 100.0)
     >>> len(events.time), events.blocks[0].item()

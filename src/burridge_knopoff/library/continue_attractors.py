@@ -10,13 +10,11 @@ import numpy as np
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.continuation import attractor_continuation
 from burridge_knopoff.continuation.settings import RefinementSettings
-from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings, takes_model
-from burridge_knopoff.library.model_forms import GivenLaw
+from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings
 from burridge_knopoff.library.progress import Progress, progress_bar
-from burridge_knopoff.library.state_forms import Initial, initial_numbers, state_blocks
+from burridge_knopoff.library.state_forms import Initial, initial_numbers
 from burridge_knopoff.library.sweep import parameter_grid
 from burridge_knopoff.messages import refusal
-from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import STARTS, Model
 from burridge_knopoff.model.parameters import parameter_key
@@ -29,30 +27,23 @@ if TYPE_CHECKING:
     import xarray
 
 
-@takes_model
 @show_settings(SearchSettings)
 def continue_attractors(
-    law: Model | GivenLaw,
-    a: Any = None,
+    model: Model,
     settings: SearchSettings | None = None,
     motion: MotionSettings = MOTION,
     *,
     refine: float | None = None,
     starts: Sequence[Initial] = (),
     start: str = "moving",
-    chain: Chain | None = None,
-    blocks: int | None = None,
-    contact: str | None = None,
     cores: int | None = None,
     progress: Progress = False,
     **by_name: Any,
 ) -> xarray.Dataset:
-    """Return the attractors along a, or along another parameter, with their branches, basin fractions and changes.
+    """Return the attractors along a parameter of a model, with their branches, basin fractions and changes.
 
-    law, chain, blocks, contact : see `simulate`
-    a : friction parameters, shape (n,), or one number; by default that of a `Model` or a `Law`
-    by_name : other parameters as in `sweep`, one of them a sequence if a is not; and settings of the search by name
-        (see `SearchSettings`)
+    by_name : parameters as in `sweep`, one of them a sequence; and settings of the search by name (see
+        `SearchSettings`)
     settings, motion, starts, start : see `find_attractors`; of a state of a motion, positions and velocities count
     refine : distance to which changes are located in the parameter; by default a tenth of the smallest step between the
         given values
@@ -69,14 +60,15 @@ def continue_attractors(
 
     Source: G. Datseris, K. Luiz Rossi and A. Wagemakers, Chaos 33 (2023) 073151.
 
-    >>> from burridge_knopoff import SearchSettings, continue_attractors
+    >>> from burridge_knopoff import Model, SearchSettings, continue_attractors
     >>> quick = SearchSettings(samples=12, fraction_width=0.2, transient=1000, window=800)
-    >>> data = continue_attractors("linearized", [0.08, 0.09], quick, refine=0.01, cores=1)
+    >>> data = continue_attractors(Model("linearized"), quick, a=[0.08, 0.09], refine=0.01, cores=1)
     >>> data.branch.values.tolist(), data.branch_name.values[:2].tolist()
     ([[0, 1, 2, -1], [1, 2, 3, 3]], ['synchronized', 'alternating (1)'])
     >>> data.from_branch.values.tolist(), data.to_branch.values.tolist()
     ([0, 1, 0], [3, 1, 3])
     """
+    instance_of(model, Model, "model")
     named, parameters = divide(by_name, SearchSettings)
     chosen = settings_of(SearchSettings, settings, named)
     instance_of(motion, MotionSettings, "motion")
@@ -85,13 +77,10 @@ def continue_attractors(
     given = elements(starts)
     if given is None:
         raise refusal("starts", starts, "a list of initial states")
-    shape = {"chain": chain, "blocks": blocks, "contact": contact}
-    shape["state_blocks"] = state_blocks(given[0], "starts[0]") if given else 3
-    parameters = {name: value for name, value in (("a", a), *parameters.items()) if value is not None}
     # Imported here so that xarray is loaded only for a Dataset.
     from burridge_knopoff.summaries.attractors_along import reserved_names, summarize
 
-    base, axes, kept = parameter_grid(law, parameters, shape, SearchSettings, reserved_names())
+    base, axes, kept = parameter_grid(model, parameters, fields_of(SearchSettings), reserved_names())
     if len(axes) != 1:
         name = base.parameter_names[0]
         raise ValueError(f"{name}: got {len(axes)} parameters with several values, expected one, {name} or another")

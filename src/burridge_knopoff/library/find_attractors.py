@@ -10,38 +10,29 @@ import numpy as np
 from burridge_knopoff.attractors import search as attractors
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.settings import SearchSettings
-from burridge_knopoff.library.keyword_settings import settings_of, show_settings, takes_model
-from burridge_knopoff.library.model_forms import GivenLaw, model_and_settings
-from burridge_knopoff.library.state_forms import Initial, state_blocks, state_in
+from burridge_knopoff.library.keyword_settings import settings_of, show_settings
+from burridge_knopoff.library.state_forms import Initial, state_in
 from burridge_knopoff.messages import refusal
-from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import STARTS, Model
 from burridge_knopoff.model.ranges import OneOf
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.values import elements, instance_of
 
 
-@takes_model
 @show_settings(SearchSettings)
 def find_attractors(
-    law: Model | GivenLaw,
-    a: Any = None,
+    model: Model,
     settings: SearchSettings | None = None,
     motion: MotionSettings = MOTION,
     *,
     starts: Sequence[Initial] = (),
     start: str = "moving",
-    chain: Chain | None = None,
-    blocks: int | None = None,
-    v: float | None = None,
-    contact: str | None = None,
     **by_name: Any,
 ) -> tuple[list[Attractor], np.ndarray]:
     """Return the attractors of a model, and the index of the attractor that each initial state reaches.
 
-    law, a, chain, blocks, v, contact : as for `simulate`
     settings : of the search, with the number of sampled states; by_name : some or all of them by name (see
-        `SearchSettings`), and parameters of the model as for `simulate`
+        `SearchSettings`)
     motion : how kinds of motion are classified
     starts : initial states in addition to the sampled ones, each in any form that `simulate` takes
     start : moving or tested, see `Model.begin`
@@ -55,10 +46,9 @@ def find_attractors(
 
     Times are in units of 1/ω. docs/search.md describes the search.
 
-    >>> from burridge_knopoff import find_attractors
-    >>> attractors, labels = find_attractors(
-    ...     "linearized", 0.08, starts=["plus"], samples=12, transient=500, window=500
-    ... )
+    >>> from burridge_knopoff import Model, find_attractors
+    >>> model = Model("linearized", a=0.08)
+    >>> attractors, labels = find_attractors(model, starts=["plus"], samples=12, transient=500, window=500)
     >>> for attractor in attractors:
     ...     print(attractor.motion.kind.words, round(attractor.motion.mean_distance, 3))
     synchronized 0.0
@@ -66,18 +56,15 @@ def find_attractors(
     >>> labels.shape, labels[-1].item()
     ((13,), 1)
     """
+    instance_of(model, Model, "model")
     instance_of(motion, MotionSettings, "motion")
     OneOf(STARTS).form(start, "start")
     states = elements(starts)
     if states is None:
         raise refusal("starts", starts, "a list of initial states")
-    number = state_blocks(states[0], "starts[0]") if states else 3
-    model, named = model_and_settings(
-        SearchSettings, law, a, by_name, v=v, chain=chain, blocks=blocks, contact=contact, state_blocks=number
-    )
     return attractors.find_attractors(
         model,
-        settings_of(SearchSettings, settings, named),
+        settings_of(SearchSettings, settings, by_name),
         motion,
         starts=[state_in(model, state, f"starts[{index}]") for index, state in enumerate(states)],
         start=start,

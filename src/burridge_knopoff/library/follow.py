@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
-from burridge_knopoff.laws import Law
-from burridge_knopoff.library.keyword_settings import divide, settings_of
-from burridge_knopoff.library.model_forms import GivenLaw, model_of
-from burridge_knopoff.library.state_forms import Initial, begun_state, state_blocks
+from burridge_knopoff.library.keyword_settings import settings_of
+from burridge_knopoff.library.state_forms import Initial, begun_state
 from burridge_knopoff.messages import format_value, refusal
-from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.limit_cycle import limit_cycle
 from burridge_knopoff.periodic_orbits import following
@@ -19,7 +16,6 @@ from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.following import CONTINUATION, ContinuationSettings
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
-from burridge_knopoff.values import is_sequence
 
 UNBOUNDED = (-math.inf, math.inf)
 
@@ -31,37 +27,30 @@ SETTLING = (1000.0, 10_000.0, 100_000.0)
 
 
 def follow(
-    orbit: PeriodicOrbit | Model | GivenLaw,
-    a: Any = None,
+    orbit: PeriodicOrbit | Model,
     interval: Any = UNBOUNDED,
     settings: ContinuationSettings = CONTINUATION,
     *,
-    parameter: str = "a",
+    parameter: str,
     upward: bool = True,
     is_complete: Callable[[list[BranchOrbit]], bool] = lambda points: False,
     initial: Initial | None = None,
     settling: float | None = None,
     start: str = "moving",
-    chain: Chain | None = None,
-    blocks: int | None = None,
-    v: float | None = None,
-    contact: str | None = None,
-    **parameters: Any,
+    **by_name: Any,
 ) -> list[BranchOrbit]:
     """Return the orbits of a branch, continued from one of them until a parameter leaves an interval.
 
-    orbit : stable or unstable, of any chain; first reduced to its minimal form. Or a `Model` or a law: then the orbit
-        on which the motion from `initial` settles
-    a : of a law, as for `simulate`; left out after an orbit or a `Model`
+    orbit : stable or unstable, of any chain; first reduced to its minimal form. Or a `Model`: then the orbit on which
+        the motion from `initial` settles; a parameter that it leaves open has the middle of the interval
     interval : (low, high) of the parameter; by default unbounded
-    settings : lengths of steps, also by name (see `ContinuationSettings`); upward : whether the parameter increases at
-        first
+    settings : lengths of steps; by_name : some or all of them by name (see `ContinuationSettings`)
+    upward : whether the parameter increases at first
     parameter : a, v, a parameter of the law such as sigma, one of the chain such as coupling, or that of one block or
         spring such as `mass[3]` (`Model.at`)
     is_complete : called with all orbits so far after each orbit that does not graze; ends the branch if true
-    initial, start : the state, needed for a model or a law, since several attractors coexist; see `simulate`
+    initial, start : the state, needed for a model, since several attractors coexist; see `simulate`
     settling : time for the motion to settle; by default as long as needed, up to 100 000
-    chain, blocks, v, contact, parameters : of a law, as for `simulate`
 
     A grazing orbit is in the list with `is_grazing` set; the next orbit, if there is one, is on the other side. The
     branch also ends where it has returned to its first orbit, where it joins a branch of simpler orbits, where steps
@@ -70,7 +59,7 @@ def follow(
 
     Raises OrbitError if the motion settles on no periodic orbit, or if the continuation cannot start, for example if
     the orbit is outside the interval or if its return has no derivative (see `multipliers`). Raises ValueError for an
-    invalid interval or a name that is not a parameter of the model, and for a model or a law without `initial`.
+    invalid interval or a name that is not a parameter of the model, and for a model without `initial`.
 
     Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493 (pseudo-arclength);
     docs/bifurcations.md explains how a branch continues where its orbit grazes.
@@ -89,21 +78,11 @@ def follow(
     >>> [round(bifurcation.a, 4) for bifurcation in locate_bifurcations(branch)]
     [0.087]
     """
-    if is_sequence(a) or not (a is None or isinstance(orbit, Model | Law | str | Mapping)):
-        # An interval follows an orbit or a model at once.
-        if isinstance(interval, ContinuationSettings):
-            settings = interval
-        elif interval is not UNBOUNDED:
-            raise ValueError("interval: got two, expected one")
-        a, interval = None, a
-    named, parameters = divide(parameters, ContinuationSettings)
-    settings = settings_of(ContinuationSettings, settings, named)
-    if isinstance(orbit, Model | Law | str | Mapping):
-        of_model = {"chain": chain, "blocks": blocks, "contact": contact, "parameters": {"v": v, **parameters}}
-        orbit = _settled_orbit(orbit, a, initial, start, settling, of_model)
+    settings = settings_of(ContinuationSettings, settings, by_name)
+    if isinstance(orbit, Model):
+        orbit = _settled_orbit(_within(orbit, parameter, interval), initial, start, settling)
     else:
-        given = {"initial": initial, "settling": settling, "chain": chain, "blocks": blocks, "v": v, "contact": contact}
-        for name, value in {**given, **parameters}.items():
+        for name, value in {"initial": initial, "settling": settling}.items():
             if value is not None:
                 raise ValueError(f"{name}: got {format_value(value)} together with an orbit, expected none")
     if not callable(is_complete):
@@ -132,18 +111,20 @@ def _has_closed(branch: Sequence[BranchOrbit]) -> bool:
     return abs(between - periods[0]) <= CLOSED * (max(periods) - min(periods))
 
 
-def _settled_orbit(
-    law: Model | GivenLaw,
-    a: float | None,
-    initial: Initial | None,
-    start: str,
-    settling: float | None,
-    of_model: Mapping[str, Any],
-) -> PeriodicOrbit:
+def _within(model: Model, parameter: str, interval: Any) -> Model:
+    """Return a model with a value of the parameter: if it leaves the parameter open, the middle of the interval."""
+    if parameter not in model.law.missing:
+        return model
+    low, high = following.interval_ends(interval)
+    if not math.isfinite(high - low):
+        raise refusal("interval", interval, f"finite ends, since the model leaves {parameter} open")
+    return model.at(**{parameter: 0.5 * (low + high)})
+
+
+def _settled_orbit(model: Model, initial: Initial | None, start: str, settling: float | None) -> PeriodicOrbit:
     """Return the orbit on which a motion settles, after the given time or the first of SETTLING that suffices."""
     if initial is None:
         raise ValueError("initial: missing, expected a state: several attractors may coexist")
-    model = model_of(law, a, state_blocks=state_blocks(initial), **of_model)
     state = begun_state(model, initial, start=start)
     if settling is not None:
         return limit_cycle(model, state, settling)

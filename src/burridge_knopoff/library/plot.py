@@ -57,7 +57,7 @@ def plot(result: Any, axes: Axes | None = None) -> Figure:
     line, for anything else, and for axes where the picture has several panels.
 
     >>> from burridge_knopoff import plot, sweep
-    >>> runs = sweep("linearized", [0.05, 0.1, 0.15], "plus", transient=1000, window=500)
+    >>> runs = sweep(Model("linearized"), "plus", a=[0.05, 0.1, 0.15], transient=1000, window=500)
     >>> (panel,) = plot(runs).axes
     >>> panel.get_xlabel(), len(panel.lines) > 0
     ('$a$', True)

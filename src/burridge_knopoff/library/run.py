@@ -26,13 +26,14 @@ def motion_of(run: Trajectory, settings: MotionSettings) -> Motion:
 class Run(Trajectory):
     """A `Trajectory` that can be plotted and turned into a Dataset; `simulate` returns one.
 
-    >>> from burridge_knopoff import simulate
-    >>> run = simulate("linearized", 0.08, "plus", transient=0, window=20)
+    >>> from burridge_knopoff import Model, simulate
+    >>> model = Model("linearized", a=0.08)
+    >>> run = simulate(model, "plus", transient=0, window=20)
     >>> run.to_dataset().velocity.dims
     ('trajectory_time', 'block')
-    >>> simulate("linearized", 0.08, "plus").motion().kind.words
+    >>> simulate(model, "plus").motion().kind.words
     'periodic'
-    >>> simulate("linearized", 0.1, transient=100, window=20).catalogue(100)
+    >>> simulate(model.at(a=0.1), transient=100, window=20).catalogue(100)
     <Catalogue of 17 slip events of 3 blocks, linearized law, a = 0.1, τ = 120 to 220, completed>
     """
 

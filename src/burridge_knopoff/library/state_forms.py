@@ -61,8 +61,10 @@ def _state(initial: Any, key: str) -> InitialState:
     return InitialState(**_KEYS.form(dict(zip(("position", "velocity"), pair, strict=True)), key))
 
 
-def is_list_of_states(initial: Any) -> bool:
-    """Return whether a value is a list of states: a sequence, but not one of positions and velocities."""
+def has_several_names(initial: Any) -> bool:
+    """Return whether a value is a list of states, and not positions and velocities, or a mapping of named states."""
+    if isinstance(initial, Mapping):
+        return bool(initial) and all(isinstance(item, Mapping) for item in initial.values())
     items = elements(initial)
     return items is not None and not (
         len(items) == 2 and all(is_sequence(x) and not any(map(is_sequence, x)) for x in items)
@@ -70,12 +72,14 @@ def is_list_of_states(initial: Any) -> bool:
 
 
 def named_states(initial: Any) -> dict[str, InitialState | ChainState | Trajectory]:
-    """Return a state or a list of states by name: numbers alone are `own`, motions `continued`, `continued_2` …
+    """Return states by name, from one state, a list, or {NAME: numbers}: numbers alone are `own`, motions `continued` …
 
     Raises ValueError, one line, for what is no state, for numbers without a name in a list, and for equal names.
     """
-    several = is_list_of_states(initial)
+    several = has_several_names(initial)
     items = elements(initial) or [] if several else [initial]
+    if several and isinstance(initial, Mapping):
+        items = [{"name": name, **numbers} for name, numbers in initial.items()]
     states: dict[str, Any] = {}
     for number, item in enumerate(items):
         key = f"initial[{number}]" if several else "initial"
@@ -93,16 +97,6 @@ def named_states(initial: Any) -> dict[str, InitialState | ChainState | Trajecto
     return states
 
 
-def state_blocks(initial: Initial, key: str = "initial") -> int | None:
-    """Return the number of blocks of a state in any form, None if random numbers do not fix it.
-
-    Raises ValueError, one line, for what is no state.
-    """
-    if isinstance(initial, Trajectory):
-        return initial.model.blocks
-    return initial.position.size if isinstance(initial, ChainState) else given_state(initial, key).blocks
-
-
 def state_in(model: Model, initial: Initial, key: str = "initial") -> InitialState | ChainState:
     """Return a state in any form as the model takes it: of a run its final state.
 
@@ -113,7 +107,7 @@ def state_in(model: Model, initial: Initial, key: str = "initial") -> InitialSta
     if isinstance(initial, Trajectory):
         state, remark = final_state(model, initial, key)
         if remark:
-            warnings.warn(remark, stacklevel=4)
+            warnings.warn(remark, stacklevel=3)
         return state
     if isinstance(initial, StartedState):
         return _restarted(model, initial)
@@ -177,8 +171,8 @@ def warn_of_run(model: Model, initial: InitialState | ChainState, settings: Sett
     A long one takes more than a minute, since springs or dashpots are stiff, or springs are very many.
     """
     if isinstance(initial, InitialState) and (remark := model.dropped_velocities(initial, settings.start)):
-        warnings.warn(remark, stacklevel=4)
+        warnings.warn(remark, stacklevel=3)
     if is_stiff(model.chain) or is_dense(model.chain):
         begun = initial if isinstance(initial, ChainState) else model.begin(initial, settings.start)
         if note := cost_note(model, begun, settings):
-            warnings.warn(note, stacklevel=4)
+            warnings.warn(note, stacklevel=3)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain as chained
 from itertools import product
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -14,24 +14,28 @@ import numpy as np
 from burridge_knopoff.dataset.law_attributes import has_a
 from burridge_knopoff.dataset.point import POINT_VARIABLES, point_attributes, point_values, run_coordinates
 from burridge_knopoff.dataset.variables import PERIOD, Variable, flag
-from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings, takes_model
-from burridge_knopoff.library.model_forms import GivenLaw, model_of
+from burridge_knopoff.laws.law import recorded_a
+from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings
 from burridge_knopoff.library.progress import Progress, progress_bar
 from burridge_knopoff.library.run import motion_of
 from burridge_knopoff.library.state_forms import (
     Initial,
     final_state,
-    is_list_of_states,
+    has_several_names,
     named_states,
-    state_blocks,
     warn_of_run,
 )
-from burridge_knopoff.messages import format_value, full_key, refusal
-from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.messages import format_value, full_key, refusal, suggestion
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.model.parameters import parameter_key, parse_indexed_name, plain_name, remarks_on_states
+from burridge_knopoff.model.parameters import (
+    format_parameter_names,
+    parameter_key,
+    parse_indexed_name,
+    plain_name,
+    remarks_on_states,
+)
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.running.cores import chosen_cores
@@ -40,7 +44,7 @@ from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import prepare
 from burridge_knopoff.running.threads import map_in_threads
 from burridge_knopoff.running.trajectory import Trajectory
-from burridge_knopoff.values import elements, instance_of, is_sequence
+from burridge_knopoff.values import each_instance_of, elements, instance_of, is_sequence
 
 if TYPE_CHECKING:
     import xarray
@@ -75,75 +79,73 @@ class _Point:
     state: InitialState | ChainState
 
 
-@takes_model
 @show_settings(Settings)
 def sweep(
-    law: Model | GivenLaw | Sequence[GivenLaw],
-    a: Any = None,
+    model: Model | Sequence[Model],
     initial: Initial | Sequence[Initial] = "minus",
     settings: Settings | None = None,
     *,
     motion: MotionSettings | None = MOTION,
-    chain: Chain | None = None,
-    blocks: int | None = None,
-    contact: str | None = None,
     cores: int | None = None,
     progress: Progress = False,
     **by_name: Any,
 ) -> xarray.Dataset:
-    """Run a simulation at each of several a, or at each point of a grid over laws, initial states and any parameters.
+    """Run a simulation at each point of a grid over laws, initial states and any parameters of a model.
 
-    law : a `Model` with its own chain, contact and values of all parameters; a law in any form that `simulate` takes;
-        or a list of laws
-    a : friction parameters, shape (n,), or one number; by default that of a `Model` or a `Law`
-    initial : a state in any form that `simulate` takes, or a list of states; in a list, numbers have a name:
-        `{"name": …, "position": …, "velocity": …}` or an `InitialState`
-    by_name : other parameters, v, those of the chain such as coupling, or of one block or spring such as `mass[3]`,
-        which takes precedence, and the parameters of the law such as sigma, each one number or a sequence; and settings
-        of the run by name
+    model : with the values of the parameters that do not vary; or a list of models that differ in their laws
+    initial : a state in any form that `simulate` takes, or several by name: a list of states, in which numbers have a
+        name, or `{"s": {"position": …, "velocity": …}, …}`
+    by_name : parameters, each one number or a sequence: of the law such as a, v, of the chain such as coupling, or of
+        one block or spring such as `mass[3]`, which takes precedence; and settings of the run by name
     motion : thresholds of the kinds of motion, for v = 0.1; None leaves out `kind` and `period`, which take up to a
         fifth of the time of a run of default length
-    settings, chain, blocks, contact : see `simulate`
+    settings : see `simulate`
     cores : number of simultaneous runs, by default the number of cores; results do not depend on it
     progress : True for a bar, in a terminal or a notebook, if rich or tqdm is installed; "always" for one in a pipe too
 
-    Each list is a dimension of the Dataset: law, initial, a, then the other parameters in the order given; that of
-    `mass[3]` is `mass_3`. The variables are those of a point (docs/variables.md) with one value per run, batch, block,
-    exponent or level of J, among them `mean_distance`, `mean_distance_error`, `lyapunov_exponent` and `status`, which
-    is 0 for a completed run; and the `kind` of motion in the window with its `period` (see `MotionKind` and
-    `decode_flags`). The series of a run are left out, since `simulate` returns them: the variables over `sample`,
-    `earlier_event`, `event`, `crossing` and `trajectory_time`. The states `minus` and `plus` follow v; other numbers
-    are the same at every point, and so are those of every state if springs, masses or thresholds vary: the attribute
-    `remark` then says so. Raises ValueError, one line, for a wrong argument; an error at one point names it.
+    Each list is a dimension of the Dataset: law, initial, then the parameters in the order given; that of `mass[3]` is
+    `mass_3`. A parameter with one value goes to the laws that have it. The variables are those of a point
+    (docs/variables.md) with one value per run, batch, block, exponent or level of J, among them `mean_distance`,
+    `mean_distance_error`, `lyapunov_exponent` and `status`, which is 0 for a completed run; and the `kind` of motion in
+    the window with its `period` (see `MotionKind` and `decode_flags`). The series of a run are left out, since
+    `simulate` returns them: the variables over `sample`, `earlier_event`, `event`, `crossing` and `trajectory_time`.
+    The states `minus` and `plus` follow v; other numbers are the same at every point, and so are those of every state
+    if springs, masses or thresholds vary: the attribute `remark` then says so. Raises ValueError, one line, for a wrong
+    argument; an error at one point names it.
 
-    >>> from burridge_knopoff import sweep
-    >>> runs = sweep("nonlinear", [0.02, 0.05, 0.3], transient=1000, window=500, batches=2)
+    >>> from burridge_knopoff import Model, sweep
+    >>> model = Model("nonlinear")
+    >>> runs = sweep(model, a=[0.02, 0.05, 0.3], transient=1000, window=500, batches=2)
     >>> runs.mean_distance.dims, runs.lyapunov_exponent.shape
     (('a',), (3, 3))
     >>> (runs.mean_distance < 1e-6).values.tolist()
     [True, True, False]
-    >>> runs = sweep(["linearized", "nonlinear"], 0.08, ["minus", "plus"], v=[0.05, 0.1])
+    >>> runs = sweep([Model("linearized"), model], ["minus", "plus"], a=0.08, v=[0.05, 0.1])
     >>> runs.kind.dims, runs.kind.sel(v=0.1).values.tolist()
     (('law', 'initial', 'v'), [[0, 1], [0, 2]])
     """
+    several = is_sequence(model)
+    models = each_instance_of(model, Model, "model") if several else [instance_of(model, Model, "model")]
+    if not models:
+        raise ValueError("model: got no model, expected at least one")
+    for number, other in enumerate(models[1:], 1):
+        models[0].check_same(replace(other, law=models[0].law), f"model[{number}]")
     named, parameters = divide(by_name, Settings)
     chosen = settings_of(Settings, settings, named)
     if motion is not None:
         instance_of(motion, MotionSettings, "motion")
     cores = chosen_cores(cores)
-    laws, states = elements(law) or [law], named_states(initial)
-    parameters = {name: value for name, value in (("a", a), *parameters.items()) if value is not None}
-    sizes = [state_blocks(state) for state in states.values()]
-    shape = {"chain": chain, "blocks": blocks, "contact": contact, "state_blocks": sizes[0]}
-    grids = []
-    for number, item in enumerate(laws):
-        place = {"law": item if isinstance(item, str) else f"number {number + 1}"} if len(laws) > 1 else {}
-        grids.append(_call_at(place, parameter_grid, item, parameters, shape, Settings, _RESERVED))
+    states = named_states(initial)
+    laws = [item.law.name for item in models]
     axes: dict[str, list[Any]] = {}
-    if is_sequence(law):
-        names = [base.law.name for base, *_ in grids]
-        axes["law"] = _different(names, "law", ": law_of(name, a, …) gives a law a name")
-    if is_list_of_states(initial):
+    if several:
+        axes["law"] = _different(laws, "law", ': Model({NAME: {"law": …}}) gives a law a name')
+    grids = []
+    for item in models:
+        place = {"law": item.law.name} if len(models) > 1 else {}
+        own = _values_for(item, parameters, models)
+        grids.append(_call_at(place, parameter_grid, item, own, fields_of(Settings), _RESERVED))
+    if has_several_names(initial):
         axes["initial"] = [*states]
     axes |= grids[0][1]
     points = [point for grid in grids for point in _points(*grid, states, axes, chosen)]
@@ -174,18 +176,31 @@ def _different(values: list[_T], name: str, hint: str = "") -> list[_T]:
     return values
 
 
+def _values_for(model: Model, parameters: Mapping[str, Any], models: Sequence[Model]) -> dict[str, Any]:
+    """Return the parameters of one of several models, without those with one value that only other laws have."""
+    elsewhere = {name for other in models for name in other.law.names} - {*model.law.names}
+    return {name: value for name, value in parameters.items() if name not in elsewhere or is_sequence(value)}
+
+
 def parameter_grid(
-    law: Any, parameters: Mapping[str, Any], shape: Mapping[str, Any], settings: type, reserved: Collection[str]
+    model: Model, parameters: Mapping[str, Any], settings: Iterable[str], reserved: Collection[str]
 ) -> tuple[Model, dict[str, list[float]], dict[str, float]]:
     """Return the model with all single-valued parameters, the values of those given as sequences, and values to keep.
 
     The latter are of one block or spring, such as `mass[3]`, and take precedence over those of a sequence for all.
 
-    shape : further arguments of `model_of`; settings : class of the settings of the call
+    settings : names of the settings of the call, for messages
     reserved : names of the result that no parameter with several values can have
 
     Raises ValueError, one line, for a wrong argument, and for a value that occurs twice.
     """
+    for name in parameters:
+        if name not in model.parameter_names and parse_indexed_name(name) is None:
+            allowed = [format_parameter_names(model.parameter_names), *sorted(settings)]
+            hint = suggestion(name, [*model.parameter_names, *settings])
+            raise ValueError(
+                f"{full_key('', name)}: not a setting or a parameter, expected {' | '.join(allowed)}{hint}"
+            )
     axes: dict[str, list[Any]] = {
         name: values for name, value in parameters.items() if (values := elements(value)) is not None
     }
@@ -198,7 +213,7 @@ def parameter_grid(
             raise ValueError(f"{full_key('', name)}: got no value, expected at least one")
     first = {name: axes[name][0] if name in axes else value for name, value in parameters.items()}
     single = {name: first.pop(name) for name in parameters if parse_indexed_name(name) and parameter_key(name) in axes}
-    base = model_of(law, first.pop("a", None), **shape, parameters=first, settings=fields_of(settings))
+    base = model.at(**first) if first else model
     kept = {name: base.at(**{name: value}).parameter(name) for name, value in single.items() if name not in axes}
     for name, values in axes.items():
         axes[name] = _different([base.at(**{name: value}).parameter(name) for value in values], name)
@@ -261,7 +276,7 @@ def _dataset(
 
     shape = [len(values) for values in axes.values()]
     plain = {name: plain_name(name) for name in axes}
-    single = {"law": point.model.law.name, "initial": state, "a": point.model.a, "v": point.model.v}
+    single = {"law": point.model.law.name, "initial": state, "a": recorded_a(point.model.law), "v": point.model.v}
     if not any(has_a(attributes) for _, attributes in runs):
         single.pop("a")
     coordinates = {name for name in single if name not in axes}

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
-from burridge_knopoff.laws import FormulaLaw, Law
-from burridge_knopoff.laws.law import MAX_SPEED
-from burridge_knopoff.messages import format_value, full_key, refusal
+from burridge_knopoff.laws import FormulaLaw, GivenLaw, Law, law_of
+from burridge_knopoff.laws.law import MAX_SPEED, recorded_a
+from burridge_knopoff.messages import format_value, full_key, refusal, suggestion
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.fields import check_fields, fields_of, settings
 from burridge_knopoff.model.initial import PAPER_V, InitialState, PaperState
@@ -36,34 +37,46 @@ START = (
     "moving: every block slips at tau = 0 | tested: blocks on which the force is at most the threshold stick at tau = 0"
 )
 
+#: Names that the numbers of a law cannot have: those of a model, and of the arguments of functions of a model.
+RESERVED_NAMES = {*fields_of(Chain), "law", "chain", "v", "contact", "window", "initial", "start", "settings"}
+
 _ONE_NUMBER = "one number for the whole chain"
 
 
 @settings
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False, repr=False)
 class Model(Unchanging):
-    """A chain with a friction law, pulled by a driver of constant velocity.
+    """A friction law and a chain, pulled by a driver of constant velocity.
 
-    chain, law : see `Chain` and `laws`
+    law : a `Law`, or a law in any form that `law_of` takes
+    chain : see `Chain`; by default the paper's three blocks
+    numbers : parameters of the law, such as a and sigma, and in place of `chain` those of `Chain`, such as blocks and
+        coupling, or of one block or spring, `**{"mass[3]": 1.2}`
 
-    Raises ValueError, one line, for anything out of range.
+    A parameter of the law that has no default may be left open. Raises ValueError, one line, for anything out of range,
+    for a number that neither the law nor the chain has, and for numbers of the chain beside `chain`.
 
     All quantities are dimensionless: times in units of 1/ω, U = kX/F(0), v in units of ωF(0)/k, as in the paper
     (Section II, Eqs. 1 and 2).
 
-    >>> from burridge_knopoff import Chain, Model, law_of
-    >>> model = Model(Chain(4), law_of("nonlinear", 0.08), v=0.12)
-    >>> model.blocks, model.a, model.at(0.1).a
-    (4, 0.08, 0.1)
-    >>> model.at(coupling=2.0, v=0.2).chain.coupling
+    >>> from burridge_knopoff import Chain, Model
+    >>> Model("linearized", a=0.08)
+    <Model of 3 blocks: linearized law, a = 0.08>
+    >>> model = Model({"formula": "1 - c*tanh(a*u/c)"}, a=0.1, c=0.2, blocks=7, coupling=1.5, v=0.2)
+    >>> print(model)
+    <Model of 7 blocks: formula law 1 - c*tanh(a*u/c), a = 0.1, c = 0.2, v = 0.2, coupling = 1.5>
+    >>> model.at(coupling=2.0, a=0.2).chain.coupling
     2.0
-    >>> model.sliding_offset.shape
+    >>> Model("nonlinear", a=0.08, chain=Chain(4)).sliding_offset.shape
     (4,)
     """
 
-    chain: Chain
+    #: A model for the message if something else is given.
+    EXAMPLE: ClassVar[str] = 'Model("linearized", a=0.08)'
+
     law: Law
-    v: Annotated[float, Number(1e-6, 1e3), "velocity of the driver"] = 0.1
+    chain: Chain
+    v: Annotated[float, Number(1e-6, 1e3), "velocity of the driver"] = PAPER_V
     contact: Annotated[
         str,
         OneOf(CONTACTS),
@@ -71,10 +84,51 @@ class Model(Unchanging):
         "symmetric: it sticks while the modulus of the force is at most its threshold, and can slip backward",
     ] = "one_sided"
 
-    def __post_init__(self) -> None:
+    def __init__(
+        self,
+        law: GivenLaw,
+        *others: Any,
+        chain: Chain | None = None,
+        v: float = PAPER_V,
+        contact: str = "one_sided",
+        **numbers: Any,
+    ) -> None:
+        if others or isinstance(law, Chain):
+            raise ValueError(
+                "Model: got more than a law without a name, expected "
+                'Model("linearized", a=0.08, blocks=3, …) or Model(law, chain=Chain(…), …)'
+            )
+        of_chain = {name: value for name, value in numbers.items() if name in fields_of(Chain)}
+        indexed = {name: value for name, value in numbers.items() if parse_indexed_name(name)}
+        if chain is not None and (beside := [*of_chain, *indexed]):
+            raise ValueError(f"{beside[0]}: got {format_value(numbers[beside[0]])} beside a chain, which has its own")
+        of_law = {name: value for name, value in numbers.items() if name not in of_chain and name not in indexed}
+        names = law_of(law).names
+        for name in names:
+            if name in RESERVED_NAMES:
+                raise ValueError(f"{name}: got a parameter of the law, expected another name than that of a setting")
+        for name in of_law:
+            if name not in names:
+                raise _unknown_parameter(name, (*names, "v", *CHAIN_PARAMETERS))
+        own = law_of(law, **of_law)
+        if chain is None:
+            shape = {"blocks": 3} if of_chain.keys().isdisjoint(("blocks", "grid", "springs")) else {}
+            chain = set_chain_parameters(Chain(**{**shape, **of_chain}), indexed)
+        for name, value in (
+            ("law", own),
+            ("chain", instance_of(chain, Chain, "chain")),
+            ("v", v),
+            ("contact", contact),
+        ):
+            object.__setattr__(self, name, value)
         check_fields(self)
-        instance_of(self.chain, Chain, "chain")
-        instance_of(self.law, Law, "law")
+        if not own.missing:
+            self._check_law()
+
+    def __repr__(self) -> str:
+        return f"<Model of {self.blocks} block{'s' * (self.blocks > 1)}: {self.words}>"
+
+    def _check_law(self) -> None:
         # Blocks slip at a few times v, and faster from distant states: a run ends where the law is not analytic.
         fastest = MAX_SPEED * self.v
         if fastest > MAX_SPEED and not self.law.tape.is_analytic(0.0, fastest):
@@ -95,31 +149,26 @@ class Model(Unchanging):
         return self.chain.blocks
 
     @property
-    def a(self) -> float:
-        """Friction parameter of the law."""
-        return self.law.a
-
-    @property
     def parameter_names(self) -> tuple[str, ...]:
         """Names of the parameters of the law, the driver and the whole chain."""
-        return (*(["a"] if self.law.has_a else []), *self.law.parameters, "v", *CHAIN_PARAMETERS)
+        return (*self.law.names, "v", *CHAIN_PARAMETERS)
 
     @property
     def place(self) -> str:
         """The model in messages: a, or v under a law without a."""
-        return f"a = {self.a!r}" if self.law.has_a else f"v = {self.v!r}"
+        name = "a" if "a" in self.law.parameters else "v"
+        return f"{name} = {self.parameter(name)!r}"
 
     @property
     def words(self) -> str:
-        """The model in a line: its law and a, and all that is not the paper's except the number of blocks.
+        """The model in a line: its law, and all that is not the paper's except the number of blocks.
 
-        >>> from burridge_knopoff import Chain, Model, law_of
-        >>> Model(Chain(3, mass=(1.0, 1.0, 1.2)), law_of("stribeck", 0.08, {"sigma": 0.02}), 0.5).words
+        >>> from burridge_knopoff import Model
+        >>> Model("stribeck", a=0.08, sigma=0.02, v=0.5, mass=(1.0, 1.0, 1.2)).words
         'stribeck law, a = 0.08, sigma = 0.02, v = 0.5, mass = (1.0, 1.0, 1.2)'
         """
         law, defaults = self.law, self.law.defaults
-        values: dict[str, Any] = {"a": law.a} if law.has_a else {}
-        values |= {key: value for key, value in law.parameters.items() if value != defaults.get(key)}
+        values: dict[str, Any] = {key: value for key, value in law.parameters.items() if value != defaults.get(key)}
         for part in (self, self.chain):
             for key, of_model in fields_of(type(part)).items():
                 if key != "blocks" and getattr(part, key) not in (of_model.default, None):
@@ -140,44 +189,37 @@ class Model(Unchanging):
 
     def _stored_parameter(self, name: str) -> Any:
         """Return a parameter as the model stores it: a number, several numbers or a word."""
-        names = self.parameter_names
-        if not parse_indexed_name(name) and name not in (*names, "a"):
-            raise self._no_parameter(name)
-        if names.count(name) > 1:
-            raise ValueError(
-                f"{name}: got a parameter of both the law {self.law.name} and the model, expected only one"
-            )
+        if not parse_indexed_name(name) and name not in self.parameter_names:
+            raise _unknown_parameter(name, self.parameter_names)
         if parameter_key(name) in CHAIN_PARAMETERS:
             return chain_parameter(self.chain, name)
-        return {"a": self.a, "v": self.v, **self.law.parameters}[name]
+        if name in self.law.missing:
+            self.law.check_complete()
+        return self.v if name == "v" else self.law.parameters[name]
 
-    def _no_parameter(self, name: str) -> ValueError:
-        expected = format_parameter_names(self.parameter_names)
-        return ValueError(f"{full_key('', name)}: not a parameter of this model, expected {expected}")
-
-    def at(self, a: float | None = None, /, **parameters: float) -> Model:
-        """Return the same model at another a, or at other values of any parameters, such as `at(v=0.2, coupling=1.5)`.
+    def at(self, *others: Any, **parameters: float) -> Model:
+        """Return the same model at other values of any parameters, such as `at(a=0.1, v=0.2, coupling=1.5)`.
 
         `pulling` may be a number in place of `neighbours`. A value for one spring or block, `at(**{"mass[3]": 1.2})`,
         takes precedence over a value for all of them. Raises ValueError, one line, for a name that is not a parameter
         of the model, a value out of range, and a parameter of the whole chain that has several values.
         """
+        if others:
+            raise ValueError(f"at: got {format_value(others[0])} without a name, expected a name, such as a=0.08")
         of_driver: dict[str, Any] = {}
         of_chain: dict[str, Any] = {}
         of_law: dict[str, Any] = {}
-        for name, value in (parameters if a is None else {"a": a, **parameters}).items():
-            stored = self._stored_parameter(name)
-            # Without its name, a is that of a grid over several laws, on which this law does not depend.
-            if name == "a" and a is None and not self.law.has_a:
-                raise self._no_parameter(name)
-            if not isinstance(stored, float) and stored != NEIGHBOURS:
-                raise refusal(name, stored, _ONE_NUMBER)
+        for name, value in parameters.items():
+            if name not in self.law.missing:
+                stored = self._stored_parameter(name)
+                if not isinstance(stored, float) and stored != NEIGHBOURS:
+                    raise refusal(name, stored, _ONE_NUMBER)
             if real_number(value) != real_number(value):
                 raise refusal(name, value, "a number")
             part = of_driver if name == "v" else of_chain if parameter_key(name) in CHAIN_PARAMETERS else of_law
             part[name] = value
         # What does not change keeps its cached properties.
-        law = self.law.at(of_law.pop("a", None), **of_law) if of_law else self.law
+        law = self.law.at(**of_law) if of_law else self.law
         chain = set_chain_parameters(self.chain, of_chain) if of_chain else self.chain
         return replace(self, chain=chain, law=law, **of_driver)
 
@@ -187,13 +229,13 @@ class Model(Unchanging):
         Raises ValueError, one line, with a part in which it differs and `key` as its name.
         """
         part = self.chain.different_key(other.chain)
-        if part is not None:
-            name, value, other_value = f"chain.{part}", getattr(self.chain, part), getattr(other.chain, part)
-        else:
-            values = ((name, getattr(self, name), getattr(other, name)) for name in ("a", "law", "v", "contact"))
-            name, value, other_value = next((item for item in values if item[1] != item[2]), ("", None, None))
-        if name:
-            raise refusal(f"{key}.{name}", other_value, f"{format_value(value)}, as in the model")
+        of_chain = [] if part is None else [(f"chain.{part}", getattr(self.chain, part), getattr(other.chain, part))]
+        numbers = [(name, self.law.parameters.get(name), other.law.parameters.get(name)) for name in self.law.names]
+        parts = [(name, getattr(self, name), getattr(other, name)) for name in ("law", "v", "contact")]
+        for name, value, other_value in (*of_chain, *numbers, *parts):
+            # A chain may differ in its form only.
+            if value != other_value or name.startswith("chain."):
+                raise refusal(f"{key}.{name}", other_value, f"{format_value(value)}, as in the model")
 
     @property
     def has_closed_form(self) -> bool:
@@ -321,6 +363,23 @@ class Model(Unchanging):
         return stuck
 
 
+def recorded_value(model: Model, parameter: str) -> float:
+    """Return a parameter of a model as files have it: a is 0 under a law without it."""
+    return recorded_a(model.law) if parameter == "a" else model.parameter(parameter)
+
+
+def _unknown_parameter(name: str, names: Sequence[str]) -> ValueError:
+    return ValueError(
+        f"{full_key('', name)}: not a parameter of this model, expected {format_parameter_names(names)}"
+        f"{suggestion(name, names)}"
+    )
+
+
+def at_recorded_a(model: Model, a: float) -> Model:
+    """Return a model at an a of a file or a study, in which a law without a has any: it is the same at all."""
+    return model.at(a=a) if "a" in model.law.names else model
+
+
 @dataclass(frozen=True, eq=False)
 class ChainState:
     """The state of all blocks at one instant of a motion, from which a run can continue; arrays of shape (blocks,).
@@ -334,8 +393,8 @@ class ChainState:
     last step of its run, which `simulate(model, initial=run.final)` repeats. A run in two parts therefore has the same
     states, events and crossings as the whole run, bit for bit, even if the state was copied or pickled.
 
-    >>> from burridge_knopoff import Chain, InitialState, Model, law_of
-    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> from burridge_knopoff import InitialState, Model
+    >>> model = Model("linearized", a=0.08)
     >>> at = model.begin(InitialState("own", (-0.9, -1.1, -1.0), (0.1, 0.1, 0.1)), start="tested")
     >>> at.stuck.tolist(), at.velocity.tolist()
     ([True, False, True], [0.0, 0.1, 0.0])

@@ -33,7 +33,7 @@ class PhysicalUnits:
     >>> v, a = units.v(0.02), units.a(-0.8)
     >>> round(v, 12), round(a, 12)
     (0.1, 0.08)
-    >>> run = simulate("linearized", a, "plus", v=v)
+    >>> run = simulate(Model("linearized", a=a, v=v), "plus")
     >>> round(run.period * units.time, 3)
     7.862
     """

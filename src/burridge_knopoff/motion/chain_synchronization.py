@@ -18,7 +18,7 @@ import numpy as np
 
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.model.model import ChainState, Model, at_recorded_a
 from burridge_knopoff.model.ranges import Number
 from burridge_knopoff.motion.chain_settings import SAMPLE, WATCH, Sample, Watch
 from burridge_knopoff.motion.mirror import pair_distances, symmetrized
@@ -150,7 +150,7 @@ def transverse_exponent(
         the time unit of the chain (`Chain.own_units`), and the window is at least 50 of these units
 
     >>> from burridge_knopoff import Chain, InitialState, Model, law_of, transverse_exponent
-    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> model = Model("linearized", a=0.08)
     >>> state = model.begin(InitialState("own", (-0.9, -1.1, -0.9), (0.1, 0.1, 0.1)))
     >>> exponent, error = transverse_exponent(model, state, alignment=500.0, window=2000.0)
     >>> round(exponent, 3), error < 1e-3
@@ -225,7 +225,7 @@ def watch_chain(
     }
     for i, law_model in enumerate(models):
         for j, a in enumerate(grid):
-            model, initial = law_model.at(a), sample.initial_states(law_model.blocks, a)
+            model, initial = at_recorded_a(law_model, a), sample.initial_states(law_model.blocks, a)
             runner = Runner(model)
             for k, state in enumerate(initial):
                 fate = watch_state(runner, model.begin(state, sample.start), watch)

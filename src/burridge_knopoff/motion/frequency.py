@@ -75,7 +75,7 @@ def block_frequencies(model: Model, state: ChainState, duration: float = 4000.0)
     Sander and J. A. Yorke, Nonlinearity 30 (2017) 4111 (weighted averages, here of the times between slips).
 
     >>> from burridge_knopoff import Chain, Model, block_frequencies, law_of, simulate
-    >>> model = Model(Chain(3), law_of("linearized", 0.06)).at(**{"mass[3]": 1.1})
+    >>> model = Model("linearized", a=0.06).at(**{"mass[3]": 1.1})
     >>> run = simulate(model, initial="plus", transient=0, window=4000)
     >>> frequency, error = block_frequencies(model, run.final)
     >>> [round(value, 6) for value in frequency.tolist()]

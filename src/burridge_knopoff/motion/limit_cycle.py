@@ -62,7 +62,7 @@ def limit_cycle(model: Model, state: ChainState, settling: float = 0.0, window: 
     Raises ValueError for a time or a state that is not allowed.
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, simulate
-    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> model = Model("linearized", a=0.08)
     >>> run = simulate(model, initial="plus", transient=0, window=10)
     >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)
     >>> round(orbit.period, 4), orbit.symmetry.name, orbit.stop_counts

@@ -47,7 +47,7 @@ class ModeAmplitudes:
 
     >>> import numpy as np
     >>> from burridge_knopoff import Chain, ChainState, Model, law_of, mode_amplitudes
-    >>> model = Model(Chain(3), law_of("linearized", 0.0))
+    >>> model = Model("linearized", a=0.0)
     >>> antiphase = ChainState(np.array([0.05, 0.0, -0.05]), np.full(3, 0.1), np.zeros(3, bool))
     >>> modes = mode_amplitudes(model, antiphase, 100.0)
     >>> modes.amplitude[-1].round(6).tolist()
@@ -104,7 +104,7 @@ def mode_amplitudes(model: Model, state: ChainState, duration: float = 4000.0) -
     any that are orthogonal. Raises ValueError, one line, for a duration or a state that is not allowed.
 
     >>> from burridge_knopoff import Chain, Model, block_frequencies, law_of, mode_amplitudes, simulate
-    >>> model = Model(Chain(3), law_of("linearized", 0.03)).at(**{"mass[3]": 1.3})
+    >>> model = Model("linearized", a=0.03).at(**{"mass[3]": 1.3})
     >>> run = simulate(model, initial="plus", transient=0, window=6000)
     >>> modes = mode_amplitudes(model, run.final)
     >>> modes.frequency.round(3).tolist()

@@ -46,7 +46,7 @@ class SteadyMotion:
     return_rate : number of returns per unit of time
 
     >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
-    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> model = Model("linearized", a=0.08)
     >>> settings = SearchSettings(samples=12, transient=500, window=500)
     >>> attractors, labels = find_attractors(model, settings)
     >>> motion = attractors[1].motion

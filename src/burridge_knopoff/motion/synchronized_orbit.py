@@ -12,6 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from burridge_knopoff.laws.law import recorded_a
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.limit_cycle import orbit_of_motion
 from burridge_knopoff.motion.section_returns import state_of
@@ -45,14 +46,14 @@ def synchronized_orbit(model: Model) -> PeriodicOrbit:
     state does. docs/synchronization.md derives where the orbit of three blocks is stable.
 
     >>> from burridge_knopoff import Chain, Model, law_of, multipliers, synchronized_orbit
-    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> model = Model("linearized", a=0.08)
     >>> orbit = synchronized_orbit(model)
     >>> round(orbit.period, 6), orbit.stop_counts
     (5.672418, (1, 1, 1))
     >>> round(multipliers(orbit).transverse.real, 4)
     0.9589
     """
-    return synchronized_orbits(instance_of(model, Model, "model")).at(model.a)
+    return synchronized_orbits(instance_of(model, Model, "model")).at(recorded_a(model.law))
 
 
 def synchronized_orbits(model: Model) -> KnownOrbits:
@@ -65,8 +66,11 @@ def synchronized_orbits(model: Model) -> KnownOrbits:
     """
     if not model.chain.is_mirror_symmetric:
         raise OrbitError("chain: got a chain that is not its own mirror image, expected one that is")
-    seeds = [model.chain.a_unit * a for a in SEEDS] if model.law.has_a else []
-    for find, values in ((_single_cycle_orbit, seeds or [model.a]), (_settled_orbit, [*seeds, model.a])):
+    seeds = [model.chain.a_unit * a for a in SEEDS] if "a" in model.law.names else []
+    for find, values in (
+        (_single_cycle_orbit, seeds or [recorded_a(model.law)]),
+        (_settled_orbit, [*seeds, recorded_a(model.law)]),
+    ):
         for a in values:
             try:
                 return KnownOrbits(find(model_at(model, a)))

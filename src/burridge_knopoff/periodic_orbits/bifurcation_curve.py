@@ -47,7 +47,7 @@ class BifurcationCurve:
 
     >>> from burridge_knopoff import Chain, Model, follow, follow_bifurcation, law_of, locate_bifurcations
     >>> from burridge_knopoff import synchronized_orbit
-    >>> branch = follow(synchronized_orbit(Model(Chain(3), law_of("linearized", 0.0865))), (0.086, 0.0875))
+    >>> branch = follow(synchronized_orbit(Model("linearized", a=0.0865)), (0.086, 0.0875), parameter="a")
     >>> (pitchfork,) = locate_bifurcations(branch)
     >>> curve = follow_bifurcation(pitchfork, ("a", "v"), (0.099, 0.101))
     >>> curve.kind.name, curve.values.shape == curve.errors.shape == (len(curve.orbits), 2)
@@ -89,7 +89,7 @@ def follow_bifurcation(
 
     >>> from burridge_knopoff import Chain, Model, follow, follow_bifurcation, law_of, locate_bifurcations
     >>> from burridge_knopoff import synchronized_orbit
-    >>> branch = follow(synchronized_orbit(Model(Chain(3), law_of("linearized", 0.0865))), (0.086, 0.0875))
+    >>> branch = follow(synchronized_orbit(Model("linearized", a=0.0865)), (0.086, 0.0875), parameter="a")
     >>> (pitchfork,) = locate_bifurcations(branch)
     >>> curve = follow_bifurcation(pitchfork, ("a", "threshold"), (0.8, 1.2))
     >>> a, threshold = curve.values.T

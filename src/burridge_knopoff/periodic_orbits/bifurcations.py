@@ -59,9 +59,9 @@ class Bifurcation:
     is_turning_point : whether the branch turns back in the parameter there
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, locate_bifurcations, synchronized_orbit
-    >>> model = Model(Chain(3), law_of("linearized", 0.0865))
+    >>> model = Model("linearized", a=0.0865)
     >>> orbit = limit_cycle(model, synchronized_orbit(model).reference)
-    >>> branch = follow(orbit, (0.086, 0.0875))
+    >>> branch = follow(orbit, (0.086, 0.0875), parameter="a")
     >>> (bifurcation,) = locate_bifurcations(branch)
     >>> bifurcation.kind.name, bifurcation.loses_stability, bifurcation.error < 1e-9
     ('PITCHFORK', True, True)
@@ -129,9 +129,9 @@ def locate_bifurcations(branch: Sequence[BranchOrbit]) -> Iterator[Bifurcation]:
     docs/bifurcations.md explains how the kinds are distinguished.
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, locate_bifurcations, synchronized_orbit
-    >>> model = Model(Chain(3), law_of("linearized", 0.0865))
+    >>> model = Model("linearized", a=0.0865)
     >>> orbit = limit_cycle(model, synchronized_orbit(model).reference)
-    >>> branch = follow(orbit, (0.086, 0.0875))
+    >>> branch = follow(orbit, (0.086, 0.0875), parameter="a")
     >>> (bifurcation,) = locate_bifurcations(branch)
     >>> bifurcation.kind.name, round(bifurcation.a, 9)
     ('PITCHFORK', 0.086972905)

@@ -120,7 +120,9 @@ def follow_half_branch(
 
     Raises OrbitError if the continuation cannot start.
     """
-    return HalfBranch(follow(orbit, a_range, settings, upward=upward, is_complete=_stop_after_unstable(beyond)))
+    return HalfBranch(
+        follow(orbit, a_range, settings, upward=upward, is_complete=_stop_after_unstable(beyond), parameter="a")
+    )
 
 
 def _stop_after_unstable(beyond: int) -> Callable[[list[BranchOrbit]], bool]:

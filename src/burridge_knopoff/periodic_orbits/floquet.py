@@ -35,7 +35,7 @@ class Multipliers:
     power : number of returns in a period
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, multipliers, simulate
-    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> model = Model("linearized", a=0.08)
     >>> run = simulate(model, initial="plus", transient=0, window=10)
     >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)
     >>> found = multipliers(orbit)
@@ -91,7 +91,7 @@ def multipliers(orbit: PeriodicOrbit) -> Multipliers:
     Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.4, 7.4 and 10.2.
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, multipliers, simulate
-    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> model = Model("linearized", a=0.08)
     >>> run = simulate(model, initial="plus", transient=0, window=10)
     >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)
     >>> multipliers(orbit).unstable_count == 0

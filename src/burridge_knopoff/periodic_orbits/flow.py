@@ -10,7 +10,7 @@ from functools import singledispatch
 
 import numpy as np
 
-from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.model.model import ChainState, Model, at_recorded_a
 from burridge_knopoff.running.runner import Runner, new_observer
 
 
@@ -19,7 +19,7 @@ class OrbitError(ValueError):
 
     >>> from burridge_knopoff import Chain, Model, OrbitError, law_of, synchronized_orbit
     >>> try:
-    ...     synchronized_orbit(Model(Chain(3, threshold=(1, 1, 2)), law_of("linearized", 0.08)))
+    ...     synchronized_orbit(Model("linearized", a=0.08, threshold=(1, 1, 2)))
     ... except OrbitError as error:
     ...     print(error)
     chain: got a chain that is not its own mirror image, expected one that is
@@ -29,7 +29,7 @@ class OrbitError(ValueError):
 def model_at(model: Model, a: float) -> Model:
     """Return a model at another friction parameter; raises OrbitError if its law does not allow that."""
     try:
-        return model.at(a)
+        return at_recorded_a(model, a)
     except ValueError as error:
         raise OrbitError(str(error)) from None
 

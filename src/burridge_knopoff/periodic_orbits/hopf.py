@@ -52,9 +52,9 @@ class HopfBifurcation:
     period : 2π/ω, of the orbits that begin there
     mode : the eigenvector, positions and velocities, complex, shape (2 blocks,); the largest velocity is 1
 
-    >>> from burridge_knopoff import hopf_bifurcations
-    >>> law = {"formula": "1 - a*u + b*u**3"}
-    >>> (at,) = hopf_bifurcations(law, 0.5, (0.5, 1), parameter="v", b=0.3, blocks=1, pulling=1)
+    >>> from burridge_knopoff import Model, hopf_bifurcations
+    >>> model = Model({"formula": "1 - a*u + b*u**3"}, a=0.5, b=0.3, blocks=1, pulling=1)
+    >>> (at,) = hopf_bifurcations(model, (0.5, 1), parameter="v")
     >>> round(at.value, 9), round(at.period, 9), at.orbit().model.v < at.value
     (0.745355992, 6.283185307, True)
     """
@@ -102,7 +102,7 @@ class HopfBifurcation:
         return orbit
 
 
-def hopf_bifurcations(model: Model, interval: tuple[float, float], *, parameter: str = "a") -> list[HopfBifurcation]:
+def hopf_bifurcations(model: Model, interval: tuple[float, float], *, parameter: str) -> list[HopfBifurcation]:
     """Return the Hopf bifurcations of uniform sliding along a parameter, in ascending order of the parameter.
 
     interval : (low, high) of the parameter; parameter : see `follow`
@@ -113,17 +113,19 @@ def hopf_bifurcations(model: Model, interval: tuple[float, float], *, parameter:
 
     Raises ValueError, one line, for an interval that is not finite or a name that is not a parameter of the model.
 
-    >>> from burridge_knopoff import hopf_bifurcations
+    >>> from burridge_knopoff import Model, hopf_bifurcations
     >>> law = {"formula": "mud + (mus - mud)*exp(-u/v0)", "mus": 1.0, "mud": 0.5, "v0": 0.5}
-    >>> block = {"blocks": 1, "pulling": 1, "pulling_damping": 0.1, "contact": "symmetric"}
-    >>> (at,) = hopf_bifurcations(law, 0.08, (0.5, 2), parameter="v", **block)
+    >>> model = Model(law, blocks=1, pulling=1, pulling_damping=0.1, contact="symmetric")
+    >>> (at,) = hopf_bifurcations(model, (0.5, 2), parameter="v")
     >>> round(at.value, 12)
     1.151292546497
     """
     low, high = interval_ends(interval)
     if not math.isfinite(low) or not math.isfinite(high):
         raise ValueError(f"interval: got ({low:g}, {high:g}), expected finite ends")
-    instance_of(model, Model, "model").parameter(parameter)
+    instance_of(model, Model, "model").law.check_complete(parameter)
+    if parameter not in model.law.missing:
+        model.parameter(parameter)
     values = np.linspace(low, high, PARTS + 1).tolist()
     spectra = [_oscillations(model, parameter, value) for value in values]
     # Modes with equal damping cross at one value.

@@ -18,6 +18,7 @@ from functools import cached_property
 
 import numpy as np
 
+from burridge_knopoff.laws.law import recorded_a
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Whole
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, mean_distance, rate
@@ -63,7 +64,7 @@ class PeriodicOrbit:
     Times are in units of 1/ω, states in those of `Model`.
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, simulate
-    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> model = Model("linearized", a=0.08)
     >>> run = simulate(model, initial="plus", transient=0, window=10)
     >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)
     >>> orbit.monodromy.shape, orbit.residual < 1e-12, round(orbit.period / orbit.return_time)
@@ -123,7 +124,7 @@ class PeriodicOrbit:
     @property
     def a(self) -> float:
         """Friction parameter."""
-        return self.model.a
+        return recorded_a(self.model.law)
 
     @property
     def residual(self) -> float:
@@ -295,10 +296,10 @@ def find_periodic_orbit(model: Model, guess: ChainState, return_time: float, sym
     Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493.
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, find_periodic_orbit, law_of, simulate
-    >>> model = Model(Chain(3), law_of("linearized", 0.08))
+    >>> model = Model("linearized", a=0.08)
     >>> run = simulate(model, initial="plus", transient=0, window=10)
     >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)
-    >>> near = find_periodic_orbit(model.at(0.081), orbit.reference, orbit.return_time, orbit.symmetry)
+    >>> near = find_periodic_orbit(model.at(a=0.081), orbit.reference, orbit.return_time, orbit.symmetry)
     >>> near.a, round(near.period, 4)
     (0.081, 157.2682)
     """

@@ -62,9 +62,9 @@ class BranchOrbit:
     distance_to_grazing : length from here to the corner of the branch where the orbit grazes; NaN unless it is next
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, synchronized_orbit
-    >>> model = Model(Chain(3), law_of("linearized", 0.0865))
+    >>> model = Model("linearized", a=0.0865)
     >>> orbit = limit_cycle(model, synchronized_orbit(model).reference)
-    >>> branch = follow(orbit, (0.086, 0.0875))
+    >>> branch = follow(orbit, (0.086, 0.0875), parameter="a")
     >>> branch[1].tangent.shape, branch[1].is_grazing, branch[1].reduced_orbit
     ((8,), False, None)
     """

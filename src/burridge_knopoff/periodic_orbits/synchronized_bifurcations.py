@@ -55,6 +55,8 @@ def bifurcations_of(orbits: KnownOrbits) -> list[Bifurcation]:
 
 def _each_bifurcation(orbits: KnownOrbits) -> Iterator[Bifurcation]:
     """Yield the bifurcations along the orbits; beyond the end of a branch, continue both ways from the next orbit."""
+    if "a" not in orbits.model.law.names:
+        return
     size = orbits.model.chain.a_unit
     (first, high), gap = (size * end for end in RANGE), size * RESTART_GAP
     # `follow` measures its steps in the chain's own unit.
@@ -69,8 +71,8 @@ def _each_bifurcation(orbits: KnownOrbits) -> Iterator[Bifurcation]:
         try:
             start = orbits.at(a)
             if a > low:
-                yield from locate_bifurcations(follow(start, (low, high), settings, upward=False))
-            points = follow(start, (a, high), settings)
+                yield from locate_bifurcations(follow(start, (low, high), settings, upward=False, parameter="a"))
+            points = follow(start, (a, high), settings, parameter="a")
         except OrbitError:
             a += gap
             continue

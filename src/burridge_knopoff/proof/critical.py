@@ -82,7 +82,7 @@ def prove_critical(orbit: PeriodicOrbit) -> CriticalOrbit:
     """
     arcs, guess = arcs_of(orbit)
     system = equations(arcs, critical=True)
-    enclosure = enclose_widest(system, refine_guess(system, [*guess, orbit.model.a]), arcs[0].flow.box_radii)
+    enclosure = enclose_widest(system, refine_guess(system, [*guess, orbit.a]), arcs[0].flow.box_radii)
     proved = ProvedOrbit(arcs, enclosure.inner[-1], Enclosure(enclosure.inner[:-1], enclosure.outer[:-1]))
     proved.check_arcs()
     if not abs(proved.slope) > 0:

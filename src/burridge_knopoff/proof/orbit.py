@@ -78,7 +78,7 @@ def arcs_of(orbit: PeriodicOrbit) -> tuple[tuple[Arc, ...], list[float]]:
         slips[block] = not slips[block]
     if sorted(block for _, block in events) != [0, 0, 1, 1] or (False, False) not in before:
         expected = "expected all blocks to stick at once, and each to stop once in a period"
-        raise ProofError(f"a = {orbit.model.a!r}: not covered: {expected}")
+        raise ProofError(f"a = {orbit.a!r}: not covered: {expected}")
     first = before.index((False, False))
     # A period, from the first start to the next.
     cycle = events[first:] + [(time + orbit.period, block) for time, block in events[: first + 1]]

@@ -38,10 +38,10 @@ def _law_options(law: Law) -> Iterator[str]:
     if law.name != (kind or "formula"):
         yield from ("--law-name", law.name)
     for key, value in law.parameters.items():
-        if value != usual.get(key):
+        if key != "a" and value != usual.get(key):
             yield from ("--number", f"{key}={value!r}")
-    if law.has_a or law.a:
-        yield from ("--a", repr(law.a))
+    if "a" in law.parameters:
+        yield from ("--a", repr(law.parameters["a"]))
 
 
 def _changed_options(part: Any) -> Iterator[str]:

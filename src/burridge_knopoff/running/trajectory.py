@@ -38,7 +38,7 @@ class Trajectory:
     `missing_derivative` then says why, and is empty otherwise.
 
     >>> from burridge_knopoff import simulate
-    >>> run = simulate("linearized", 0.08, "plus", transient=0, window=20, events="all")
+    >>> run = simulate(Model("linearized", a=0.08), "plus", transient=0, window=20, events="all")
     >>> run.status, run.event_count, run.event_position.shape
     ('completed', 10, (10, 3))
     """

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.model import Model, at_recorded_a
 from burridge_knopoff.motion.settings import MotionSettings
 
 #: Keys of a config that belong to the criteria of motions, besides `motion`.
@@ -35,5 +34,5 @@ def model_of(
     Raises ValueError if a value is out of range.
     """
     chain = Chain(**{**config["chain"], **({} if blocks is None else {"blocks": blocks})})
-    model = Model(chain, law_of(law, a, config["laws"][law]), config["v"], config["contact"])
-    return model.at(**others) if others else model
+    model = Model({law: config["laws"][law]}, chain=chain, v=config["v"], contact=config["contact"])
+    return at_recorded_a(model, a).at(**(others or {}))

@@ -100,6 +100,8 @@ def fill_names(config: dict[str, Any]) -> None:
     for name, description in laws.items():
         if name not in LAWS and not {"law", "formula"} & description.keys():
             raise unknown_law(f"laws.{name}", name)
+        if "a" in description:
+            raise ValueError(f"laws.{name}.a: got a number of the law, expected it in `a` or in `grid`")
         with error_prefix(f"laws.{name}."):
             check_law_numbers(description.keys() - LawKeys.fields.keys())
     law_names, first = OneOf(tuple(laws)), next(iter(laws))
@@ -127,9 +129,12 @@ def check_models(
         tapes = []
         for a in grid:
             with error_prefix("laws."):
-                law = law_of(name, a, laws[name])
-            tapes.append(law.tape)
-            base = Model(chain, law, config["v"], config["contact"])
+                law = law_of({name: laws[name]})
+                law = law.at(a=a) if "a" in law.names else law
+                for number in law.missing:
+                    raise ValueError(f"{name}.{number}: missing, expected a number: the formula contains it")
+                tapes.append(law.tape)
+            base = Model(law, chain=chain, v=config["v"], contact=config["contact"])
             for values in others:
                 with error_prefix(f"grid ({name} law, a = {a:g}): " if values else ""):
                     model = base.at(**values) if values else base
@@ -150,7 +155,8 @@ def check_models(
         for name in names:
             for a in values:
                 with error_prefix(f"{key}.a: got {a:g}, at which laws."):
-                    law_of(name, a, laws[name])
+                    law = law_of({name: laws[name]})
+                    law = law.at(a=a) if "a" in law.names else law
     for name, state in config["initial"].items():
         with error_prefix(f"initial.{name}."):
             model.initial_coordinates(initial_state(name, **state))

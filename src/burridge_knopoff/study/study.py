@@ -51,7 +51,7 @@ class Study:
     @property
     def has_a(self) -> bool:
         """Whether any of the laws contains a."""
-        return any(model_of(self.config, law, 0.0).law.has_a for law in self.laws)
+        return any("a" in model_of(self.config, law, 0.0).law.names for law in self.laws)
 
     @property
     def initial(self) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from burridge_knopoff.laws.law import recorded_a
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at, state_after
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
@@ -93,4 +94,4 @@ def _settle(model: Model, state: ChainState) -> ChainState:
         now = runner.state()
         if now.stuck[0] and now.stuck[last]:
             return now
-    raise OrbitError(f"a = {model.a!r}: the end blocks no longer stick at the same time")
+    raise OrbitError(f"a = {recorded_a(model.law)!r}: the end blocks no longer stick at the same time")

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from burridge_knopoff.dataset.variables import Variable
+from burridge_knopoff.laws.law import recorded_a
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.limit_cycle import limit_cycle
 from burridge_knopoff.periodic_orbits.flow import OrbitError
@@ -37,7 +38,7 @@ VARIABLES = {
 def antiphase_orbit(model: Model) -> PeriodicOrbit:
     """Return the orbit that attracts an oscillation of the end blocks in antiphase; raises OrbitError if none does."""
     state = ChainState(model.v * AMPLITUDE * np.array([1.0, 0.0, -1.0]), np.full(3, model.v), np.zeros(3, bool))
-    orbit = limit_cycle(model, state, settling=SETTLING / model.a)
+    orbit = limit_cycle(model, state, settling=SETTLING / recorded_a(model.law))
     if orbit.symmetry is not Symmetry.SYMMETRIC:
         raise OrbitError(f"{model.place}: no antiphase orbit found: the motion is not its own mirror image")
     return orbit
@@ -54,7 +55,7 @@ def antiphase_differences(linearized: Model, nonlinear: Model, a: float) -> tupl
         # The motion under the linearized law is proportional to v.
         orbits = [
             antiphase_orbit(model)
-            for model in (linearized.at(a), nonlinear.at(a), nonlinear.at(a, v=nonlinear.v * LARGEST_A / a))
+            for model in (linearized.at(a=a), nonlinear.at(a=a), nonlinear.at(a=a, v=nonlinear.v * LARGEST_A / a))
         ]
     except (OrbitError, ValueError) as error:
         print(f"antiphase orbit: {error}")

@@ -26,6 +26,7 @@ from burridge_knopoff.continuation.attractor_continuation import Continuation
 from burridge_knopoff.dataset.columns import empty_columns
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
+from burridge_knopoff.laws.law import recorded_a
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import CONTACTS, STARTS, Model
 from burridge_knopoff.motion.period import count_distinct
@@ -107,7 +108,7 @@ def one_law(
     coordinates = axes(
         COORDINATES,
         initial=[state.name for state in initial],
-        a=[model.a for model in models],
+        a=[recorded_a(model.law) for model in models],
         block=range(1, models[0].blocks + 1),
         contact=CONTACTS,
         start=STARTS,

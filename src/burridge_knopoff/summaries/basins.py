@@ -32,6 +32,7 @@ from burridge_knopoff.basins.uncertainty import ExponentKind, uncertainty_expone
 from burridge_knopoff.dataset.law_attributes import has_a, without_a
 from burridge_knopoff.dataset.summary import AXES, axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.laws.law import recorded_a
 from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.initial import initial_state
 from burridge_knopoff.model.model import Model
@@ -168,7 +169,11 @@ def tile(
         for name, table, missing in (("branch", candidates.branch, UNDETERMINED), ("side", candidates.side, 0))
     }
     values["decision_time"] = np.where(labels == UNDETERMINED, np.nan, times).reshape(shape)
-    attributes = {"law": candidates.model.law.name, "a": candidates.model.a, "history": "snakemake, from attractors.nc"}
+    attributes = {
+        "law": candidates.model.law.name,
+        "a": recorded_a(candidates.model.law),
+        "history": "snakemake, from attractors.nc",
+    }
     coordinates = axes(COORDINATES, **{"first_position": first, row: last})
     variables = _of_plane(TILE_VARIABLES, row)
     return summary("Tile of a map of basins", variables, values, coordinates, attributes, module=__name__)
@@ -198,7 +203,11 @@ def pairs(
     ):
         values[name], values[f"{name}_error"] = pair
     values["exponent_kind"] = exponent.kind
-    attributes = {"law": candidates.model.law.name, "a": candidates.model.a, "history": "snakemake, from attractors.nc"}
+    attributes = {
+        "law": candidates.model.law.name,
+        "a": recorded_a(candidates.model.law),
+        "history": "snakemake, from attractors.nc",
+    }
     width = basins.first_position[1] - basins.first_position[0]
     coordinates = axes(COORDINATES, separation=np.array(SEPARATIONS) * width)
     return summary("Pairs of nearby states", PAIR_VARIABLES, values, coordinates, attributes, module=__name__)
@@ -247,7 +256,7 @@ def merge(
     )
     values["undetermined_count"] = (values["branch"] == UNDETERMINED).sum(["first_position", row])
     models = [model for model, *_ in maps]
-    of_map = axes(OF_MAP, law=[model.law.name for model in models], a=[model.a for model in models])
+    of_map = axes(OF_MAP, law=[model.law.name for model in models], a=[recorded_a(model.law) for model in models])
     coordinates = {**axes(COORDINATES, **{name: values[name] for name in COORDINATES if name in values}), **of_map}
     u, w = models[0].initial_coordinates(basins.initial)
     attributes = {

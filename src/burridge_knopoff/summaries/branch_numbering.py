@@ -21,7 +21,7 @@ from burridge_knopoff.attractors.table import NAMES, name_branches
 from burridge_knopoff.continuation.law_homotopy import match_branches
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
-from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.model.model import ChainState, Model, at_recorded_a
 from burridge_knopoff.study.grid import values_of
 from burridge_knopoff.study.model import models_of
 from burridge_knopoff.summaries import refined, rotation
@@ -93,7 +93,7 @@ def branch_numbers(
     first = _states(parts[0], models[0])
     for part, model in zip(parts[1:], models[1:], strict=True):
         grid = part["a"].values.tolist()
-        firsts, seconds = ([item.at(a) for a in grid] for item in (models[0], model))
+        firsts, seconds = ([at_recorded_a(item, a) for a in grid] for item in (models[0], model))
         renamed = match_branches(firsts, seconds, first, _states(part, model), settings, processes=processes)
         numbers.append(_number_remaining(renamed, part, numbers))
     # The synchronized branch may exist only between the values of the grid.
@@ -142,7 +142,7 @@ def _states(part: xarray.Dataset, model: Model) -> dict[int, dict[int, ChainStat
     for k, slot in np.argwhere((part["branch"].values >= 0) & (part["side"].values >= 0)).tolist():
         attractor = part.isel(a=k, attractor=slot)
         velocity = attractor["velocity"].values
-        position = attractor["position"].values - model.at(attractor["a"].item()).sliding_offset
+        position = attractor["position"].values - at_recorded_a(model, attractor["a"].item()).sliding_offset
         states.setdefault(attractor["branch"].item(), {})[k] = ChainState(position, velocity, velocity == 0.0)
     return states
 

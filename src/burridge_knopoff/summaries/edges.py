@@ -29,8 +29,9 @@ from burridge_knopoff.continuation.edges import (
 from burridge_knopoff.dataset.columns import Column, column_values
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.laws.law import recorded_a
 from burridge_knopoff.model.fields import settings_from_config
-from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.model import Model, at_recorded_a
 from burridge_knopoff.motion.kind import CHAOS, MotionKind
 from burridge_knopoff.motion.section_returns import state_of
 from burridge_knopoff.motion.settings import EXPONENTS
@@ -250,7 +251,7 @@ def edges_of_law(
     states = [edge for of_a in pairs for edge in distinct_edges(islice(edge_states, len(of_a)))]
     segments, numbers = continue_edges(states, float(attractors["a"].max()))
     crises = [
-        (a, branch, _approach(candidates[0].model.at(near), refined, states, branch))
+        (a, branch, _approach(at_recorded_a(candidates[0].model, near), refined, states, branch))
         for dataset in bifurcations
         for a, branch, near in _crises(dataset)
     ]
@@ -272,12 +273,12 @@ def _crises(bifurcations: xarray.Dataset) -> list[tuple[float, int, float]]:
 
 def _approach(model: Model, refined: xarray.Dataset, states: Sequence[Edge], branch: int) -> Approach:
     """Return how close the chaotic attractor of a branch comes to the saddles at the nearest a with edge states."""
-    place = int(np.flatnonzero(refined["a"].values == model.a)[0])
+    place = int(np.flatnonzero(refined["a"].values == recorded_a(model.law))[0])
     slots = np.flatnonzero(refined["branch"].values[place] == branch)
     near = [edge for edge in states if branch in edge.branch]
     if not len(slots) or not near:
         return Approach()
-    nearest = min((edge.a for edge in near), key=lambda a: abs(a - model.a))
+    nearest = min((edge.a for edge in near), key=lambda a: abs(a - recorded_a(model.law)))
     position, velocity = (refined[name].values[place, slots[0]] for name in ("position", "velocity"))
     state = state_of(np.concatenate([position - model.sliding_offset, velocity]))
     chosen = [k for k, edge in enumerate(states) if edge.a == nearest]

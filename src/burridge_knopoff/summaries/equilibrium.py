@@ -21,7 +21,7 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.laws.blend import mirror_law
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.model import Model, at_recorded_a
 from burridge_knopoff.model.uniform_sliding import DIGITS, eigenvalues, round_digits
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.summaries.sentences import at_value, lines_of, values_where
@@ -83,7 +83,7 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
     values = {name: np.full([sizes[key] for key in item.dimensions], np.nan) for name, item in VARIABLES.items()}
     for i, law_model in enumerate(models):
         for k, a in enumerate(grid if blocks <= MAX_BLOCKS else ()):
-            model = law_model.at(a)
+            model = at_recorded_a(law_model, a)
             position = sliding_position(model)
             values["equilibrium_position"][i, k] = position
             spectrum = eigenvalues(model)

@@ -21,7 +21,8 @@ from burridge_knopoff.dataset.decoding import decode_flags
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import ANSWER, Answer, Variable, flag
 from burridge_knopoff.laws import law_of
-from burridge_knopoff.model.model import Model
+from burridge_knopoff.laws.law import recorded_a
+from burridge_knopoff.model.model import Model, at_recorded_a
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.floquet import multipliers
@@ -166,7 +167,7 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
     laws = [model.law.name for model in models]
     coordinates = _coordinates(laws, grid, asymmetry)
     sizes = {name: len(coordinates[name][1]) for name in coordinates}
-    pair = [model for law in PAPER_LAWS for model in models if model.law == law_of(law, model.a)]
+    pair = [model for law in PAPER_LAWS for model in models if model.law == law_of(law, a=recorded_a(model.law))]
     variables = {**VARIABLES, **(COMPARISON if len(pair) == len(PAPER_LAWS) else {})}
     values: dict[str, Any] = {
         name: np.full([sizes[dimension] for dimension in item.dimensions], -1 if item.dtype == "i1" else np.nan)
@@ -174,7 +175,7 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
     }
     orbits: dict[str, KnownOrbits | None] = {}
     for i, model in enumerate(models):
-        orbits[laws[i]] = _orbits_of_model(model.at(a=grid[-1]) if model.law.has_a else model)
+        orbits[laws[i]] = _orbits_of_model(at_recorded_a(model, grid[-1]))
         _fill_curve(values, i, model, orbits[laws[i]], grid)
         _fill_transition(values, i, orbits[laws[i]], asymmetry)
     if len(pair) == len(PAPER_LAWS):
@@ -221,9 +222,9 @@ def _fill_curve(
     """Fill in the orbits along the grid for the i-th law."""
     for k, a in enumerate(grid):
         values["status"][i, k] = OrbitStatus.NOT_FOUND if model.blocks == BLOCKS else OrbitStatus.NOT_THREE_BLOCKS
-        if model.blocks == BLOCKS and _has_constant_friction(model.at(a)):
+        if model.blocks == BLOCKS and _has_constant_friction(at_recorded_a(model, a)):
             values["status"][i, k] = OrbitStatus.NEUTRAL
-        if orbits is None or (model.law.has_a and a == 0.0):
+        if orbits is None or ("a" in model.law.names and a == 0.0):
             continue
         try:
             orbit = orbits.at(a)
@@ -358,7 +359,7 @@ def _compare(
 
 def effective_a(model: Model, a: float) -> float:
     """Return minus the slope of a model's law, at this a, at the velocity of the driver; NaN for NaN."""
-    return a if np.isnan(a) else -float(model.law.at(float(a)).slope(model.v))
+    return a if np.isnan(a) else -float(at_recorded_a(model, float(a)).law.slope(model.v))
 
 
 def digest(data: xarray.Dataset) -> str:

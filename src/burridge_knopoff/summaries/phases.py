@@ -23,6 +23,7 @@ from burridge_knopoff.basins.initial_phases import common_phases, inner_phases, 
 from burridge_knopoff.basins.settings import PhaseSettings
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
+from burridge_knopoff.laws.law import recorded_a
 from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.running.processes import parallel_map
@@ -110,7 +111,7 @@ def one_law(
     """
     with parallel_map(processes) as apply:
         rows = apply("phases", partial(_values_at, phases=phases, label_limit=label_limit), candidates, span=(0.0, 1.0))
-    model, grid = candidates[0].model, [item.model.a for item in candidates]
+    model, grid = candidates[0].model, [recorded_a(item.model.law) for item in candidates]
     inner = model.chain.blocks - 2
     coordinates = axes(
         COORDINATES,
@@ -140,8 +141,8 @@ def _values_at(candidates: KnownAttractors, phases: PhaseSettings, label_limit: 
     model = candidates.model
     inner = model.chain.blocks - 2
     correlations = [follow_attractor(model, item.motion.state()).velocity_correlation for item in candidates.attractors]
-    common = common_phases(model.a, shape, phases.seed)
-    of_inner = inner_phases(model.a, (*shape, inner), phases.seed)
+    common = common_phases(recorded_a(model.law), shape, phases.seed)
+    of_inner = inner_phases(recorded_a(model.law), (*shape, inner), phases.seed)
     phases_of_states = amplitude.ravel(), difference.ravel(), common.ravel()
     cells = []
     for share in phases.inner_share:

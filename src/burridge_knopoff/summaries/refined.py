@@ -20,6 +20,7 @@ from burridge_knopoff.continuation.attractor_continuation import Continuation
 from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
+from burridge_knopoff.laws.law import recorded_a
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.section import Section
 from burridge_knopoff.running.settings import Settings
@@ -48,7 +49,7 @@ def one_law(
     count = len(continuation.models)
     values = slot_values(continuation.models, [continuation.rows(k) for k in range(count)], settings.lifetime, "value")
     values["section_velocity"] = _sections(continuation, settings.window, motion.section)
-    values["a"] = np.array([model.a for model in continuation.models])
+    values["a"] = np.array([recorded_a(model.law) for model in continuation.models])
     values["in_grid"] = np.isin(np.arange(count), continuation.grid)
     model = continuation.models[0]
     about = {**attractors.search_attributes(model, settings, motion, start), "refine_resolution": refine.resolution}

@@ -24,7 +24,7 @@ import xarray
 
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable, flag
-from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.model.model import ChainState, Model, at_recorded_a
 from burridge_knopoff.motion.kind import REGULAR, MotionKind
 from burridge_knopoff.motion.modes import sliding_modes
 from burridge_knopoff.motion.rotation import rotation_number
@@ -141,7 +141,7 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model], processes: int =
     for law, value, slot in np.argwhere(slots).tolist():
         at = law, value
         attractor = refined.isel(law=law, value=value, attractor=slot)
-        model, velocity = models[law].at(float(values["a"][at])), attractor["velocity"].values
+        model, velocity = at_recorded_a(models[law], float(values["a"][at])), attractor["velocity"].values
         start = ChainState(attractor["position"].values - model.sliding_offset, velocity, velocity == 0.0)
         branch = attractor["branch"].item()
         if branch == BRANCH:

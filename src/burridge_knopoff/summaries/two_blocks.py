@@ -26,7 +26,7 @@ from burridge_knopoff.dataset.variables import Answer, Variable, flag
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.model import Model, at_recorded_a
 from burridge_knopoff.motion.chain_settings import Sample
 from burridge_knopoff.motion.kind import MotionKind, motion_of_run
 from burridge_knopoff.motion.settings import MotionSettings
@@ -191,7 +191,7 @@ def _compare_at(
     motion: MotionSettings,
 ) -> xarray.Dataset:
     """Return all variables at one a: of motions over (law, state), of the order of events over (other_law, state)."""
-    models_at_a = [model.at(a) for model in models]
+    models_at_a = [at_recorded_a(model, a) for model in models]
     ends = [asymptotic_states(model, initial, search, motion, start=settings.start) for model in models_at_a]
     count, until = (np.zeros((len(models_at_a) - 1, len(initial))) for _ in range(2))
     for j, state in enumerate(initial):
@@ -220,7 +220,7 @@ def _one_block(
     measured = replace(settings, events="window", lyapunov_exponents=2)
     duration = min(measured.event_window, measured.window)
     kind, rate = [], []
-    for model in (law_model.at(a) for law_model in models):
+    for model in (at_recorded_a(law_model, a) for law_model in models):
         trajectory = run(model, initial, measured, stops_only=True)
         kind.append(motion_of_run(vars(trajectory), False, motion.scaled_to_velocity(model.v)).kind)
         rate.append(len(trajectory.event_time) / duration)
