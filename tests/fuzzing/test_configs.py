@@ -19,6 +19,7 @@ from jsonschema import Draft7Validator
 from burridge_knopoff.cli import build_parser
 from burridge_knopoff.cli.options import simulated_law
 from burridge_knopoff.model.fields import Keys
+from burridge_knopoff.running.solvers import RUN_SOLVERS
 from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
@@ -242,7 +243,7 @@ def check_laws(study, values, keys):
     assert {values["figures.law"], *values["chains.laws"]} <= set(study.laws)
     for law in study.laws:
         assert solvers[law] == (asked if isinstance(asked, str) else asked.get(law, "series"))
-        assert solvers[law] in ("series", "map", "rk4")
+        assert solvers[law] in RUN_SOLVERS
         for a in study.grid.values():
             friction = study.model(law, a).law
             assert friction.name == law

@@ -14,6 +14,7 @@ from burridge_knopoff.kernel._core import LANES, run_in_lockstep
 from burridge_knopoff.running.runner import Runner, run_together
 from burridge_knopoff.running.section import SUM, Section
 from burridge_knopoff.running.simulation import prepare, run
+from burridge_knopoff.running.solvers import RUN_SOLVERS, SOLVERS
 from burridge_knopoff.running.status import Status
 
 LAWS = "linearized", "nonlinear", "carlson_langer", "exponential", "stribeck"
@@ -86,10 +87,10 @@ def test_runs_of_all_kinds_at_once():
         for blocks in (2, 3, 24):
             model = Model(law, a=0.1, blocks=blocks)
             state = InitialState("drawn", tuple(0.2 * np.cos(np.arange(blocks))), (0.1,) * blocks)
-            for solver in ("series", "map", "rk4"):
-                if solver == "map" and not model.has_closed_form:
+            for solver in RUN_SOLVERS:
+                if SOLVERS[solver].closed_form and not model.has_closed_form:
                     continue
-                for exponents in (0, 2) if solver != "rk4" else (0,):
+                for exponents in (0, 2) if not SOLVERS[solver].has_fixed_step else (0,):
                     options = Settings(
                         solver=solver, step=0.01, transient=0.0, window=20.0, lyapunov_exponents=exponents
                     )

@@ -11,6 +11,7 @@ from burridge_knopoff.laws import LAWS
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.simulation import run
+from burridge_knopoff.running.solvers import RUN_SOLVERS, SOLVERS
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.yaml_file import read_config
@@ -168,7 +169,7 @@ def test_events_that_were_read_survive_another_run():
     assert len(runner.events()[0]) == runner.log.count
 
 
-@pytest.mark.parametrize("solver", ["series", "rk4"])
+@pytest.mark.parametrize("solver", [name for name in RUN_SOLVERS if not SOLVERS[name].closed_form])
 def test_a_log_of_stops_has_the_stops_of_the_whole_log_with_states(solver):
     model = Model("linearized", a=0.08)
     options = Settings(transient=30.0, window=60.0, event_window=60.0, solver=solver)

@@ -11,8 +11,9 @@ from burridge_knopoff.kernel._core import Catalogue
 from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number, OneOf, TrueOrFalse
-from burridge_knopoff.running.runner import FIXED_STEP_SOLVERS, Runner, new_observer
-from burridge_knopoff.running.settings import SOLVERS, TIME, check_step
+from burridge_knopoff.running.runner import Runner, new_observer
+from burridge_knopoff.running.settings import TIME, check_step
+from burridge_knopoff.running.solvers import SOLVERS
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import MOST_NUMBERS, instance_of
 
@@ -129,9 +130,9 @@ def record_events(
     if end <= begin:
         raise refusal("end", end, f"a time after begin ({begin:g})")
     profiles = TrueOrFalse().form(profiles, "profiles")
-    solver = OneOf((*SOLVERS, "euler")).form(solver, "solver")
+    solver = OneOf(tuple(SOLVERS)).form(solver, "solver")
     step = TIME.form(step, "step")
-    stepping = solver in FIXED_STEP_SOLVERS
+    stepping = SOLVERS[solver].has_fixed_step
     if stepping:
         check_step(step, LONGEST_STEP, end - state.time, model.chain)
     observer = new_observer(model, [end, end], section_only=True) if stepping else None

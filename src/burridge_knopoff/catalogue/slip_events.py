@@ -17,6 +17,7 @@ from burridge_knopoff.dataset.variables import Variable, global_attributes, xarr
 from burridge_knopoff.laws.law import recorded_a
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.solvers import SOLVERS
 from burridge_knopoff.running.status import early_end
 
 if TYPE_CHECKING:
@@ -116,7 +117,7 @@ def catalogue_of_run(
     at = model.begin(initial, start, settings.loading)
     events = record_events(model, at, end, begin=begin, profiles=settings.profiles, step=step, **ran)
     about: dict[str, Any] = {"initial": initial.name, "start": start, **ran, "history": "snakemake"}
-    if solver == "rk4":
+    if SOLVERS[solver].has_fixed_step:
         about["step"] = step
     return catalogue_dataset(events, model, begin, end, about)
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,35 @@ def empty_columns(
         name: np.full([sizes[key] for key in item.dimensions], item.missing, dtype=item.dtype)
         for name, item in variables.items()
         if all(key in sizes for key in item.dimensions) and (not beginnings or name.startswith(beginnings))
+    }
+
+
+def over_grid(
+    variables: Mapping[str, Variable],
+    grid: Mapping[str, int],
+    rows: Iterable[tuple[tuple[int, ...], Mapping[str, Any]]],
+    **sizes: int,
+) -> dict[str, np.ndarray]:
+    """Return the values of variables over a grid, and over their own dimensions.
+
+    grid : sizes of the grid by dimension; sizes : of the dimensions of the variables
+    rows : places in the grid with the values there; what a row leaves out is missing
+    """
+    whole = {name: replace(item, dimensions=(*grid, *item.dimensions)) for name, item in variables.items()}
+    values = empty_columns(whole, {**grid, **sizes})
+    for place, row in rows:
+        for name, value in row.items():
+            values[name][place] = value
+    return values
+
+
+def common_attributes(attributes: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+    """Return the attributes that are the same for all of several objects."""
+    first, *others = attributes
+    return {
+        name: value
+        for name, value in first.items()
+        if all(name in other and np.array_equal(value, other[name]) for other in others)
     }
 
 

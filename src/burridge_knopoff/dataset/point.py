@@ -173,7 +173,7 @@ def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
         "transient": settings.transient,
         "window": settings.window,
     }
-    if attributes["solver"] == "rk4":
+    if settings.has_fixed_step:
         attributes["step"] = settings.step
     if trajectory.missing_derivative:
         attributes["missing_derivative"] = trajectory.missing_derivative

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.columns import empty_columns
+from burridge_knopoff.dataset.columns import common_attributes, over_grid
 from burridge_knopoff.dataset.point import POINT_VARIABLES, RAGGED_DIMENSIONS, with_run_coordinates
 from burridge_knopoff.dataset.run import open_run
 from burridge_knopoff.dataset.variables import TIMES, xarray_variables
@@ -37,7 +38,6 @@ def combine_points(study: Study, results: Path, names: Collection[str] = ()) -> 
         if name not in common:
             raise refusal("names", name, f"variables over neither events nor crossings{suggestion(name, common)}")
     grid = point_axes(study)
-    variables = {name: replace(common[name], dimensions=(*grid, *common[name].dimensions)) for name in names or common}
     places = np.ndindex(*(len(values) for _, values, _ in grid.values()))
     points = dict(zip(places, all_points(study), strict=True))
     present = {place: point for place, point in points.items() if (results / study.run_file(**point)).is_file()}
@@ -47,17 +47,16 @@ def combine_points(study: Study, results: Path, names: Collection[str] = ()) -> 
         for name, values in first.drop_dims(RAGGED_DIMENSIONS).coords.items()
         if name not in grid and (len(study.laws) == 1 or f"law_{name}" not in first.attrs)
     }
-    sizes = {f"{name}": size for name, size in first.sizes.items()}
-    values = empty_columns(variables, sizes | {name: len(values) for name, (_, values, _) in grid.items()})
-    attributes = first.attrs
-    for place, point in present.items():
-        with open_run(results / study.run_file(**point), study.command(**point)) as dataset:
-            for name, array in values.items():
-                array[place] = dataset[name][...]
-            of_run = vars(dataset)
-            attributes = {
-                name: value
-                for name, value in attributes.items()
-                if name in of_run and np.array_equal(value, of_run[name])
-            }
-    return xarray.Dataset(xarray_variables(variables, values), {**grid, **coordinates}, attributes)
+    sizes = {f"{name}": size for name, size in first.sizes.items() if name not in grid}
+    chosen = {name: common[name] for name in names or common if {*common[name].dimensions} <= sizes.keys()}
+    attributes = [first.attrs]
+
+    def rows() -> Iterator[tuple[tuple[int, ...], dict[str, Any]]]:
+        for place, point in present.items():
+            with open_run(results / study.run_file(**point), study.command(**point)) as dataset:
+                attributes[:] = [common_attributes([*attributes, vars(dataset)])]
+                yield place, {name: dataset[name][...] for name in chosen}
+
+    values = over_grid(chosen, {name: len(along) for name, (_, along, _) in grid.items()}, rows(), **sizes)
+    variables = {name: replace(item, dimensions=(*grid, *item.dimensions)) for name, item in chosen.items()}
+    return xarray.Dataset(xarray_variables(variables, values), {**grid, **coordinates}, attributes[0])

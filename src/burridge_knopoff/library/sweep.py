@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from burridge_knopoff.dataset.columns import common_attributes, over_grid
 from burridge_knopoff.dataset.law_attributes import has_a
 from burridge_knopoff.dataset.point import POINT_VARIABLES, point_attributes, point_values, run_coordinates
 from burridge_knopoff.dataset.variables import PERIOD, Variable, flag
@@ -274,32 +275,38 @@ def _dataset(
     """
     import xarray
 
-    shape = [len(values) for values in axes.values()]
     plain = {name: plain_name(name) for name in axes}
     single = {"law": point.model.law.name, "initial": state, "a": recorded_a(point.model.law), "v": point.model.v}
     if not any(has_a(attributes) for _, attributes in runs):
         single.pop("a")
     coordinates = {name for name in single if name not in axes}
     data: dict[str, Any] = {name: ((), single[name], _COORDINATES[name].all_attributes()) for name in coordinates}
-    for name, item in {**_COMMON, **_MOTION}.items():
-        if name in _COORDINATES or name not in runs[0][0]:
-            continue
-        if item.coordinate:
-            # Batches of runs that begin at different times are only numbered.
-            if all(np.array_equal(values[name], runs[0][0][name]) for values, _ in runs):
-                coordinates.add(name)
-                data[name] = item.dimensions, np.asarray(runs[0][0][name], item.dtype), item.all_attributes()
-        else:
-            array = np.array([values[name] for values, _ in runs], item.dtype)
-            dimensions = *plain.values(), *item.dimensions
-            data[name] = dimensions, array.reshape((*shape, *array.shape[1:])), item.all_attributes()
-    for name, values in axes.items():
+    rows, attributes = zip(*runs, strict=True)
+    first = rows[0]
+    variables = {name: item for name, item in {**_COMMON, **_MOTION}.items() if name in first}
+    for name in [name for name, item in variables.items() if item.coordinate or name in _COORDINATES]:
+        item = variables.pop(name)
+        # Batches of runs that begin at different times are only numbered.
+        if name not in _COORDINATES and all(np.array_equal(row[name], first[name]) for row in rows):
+            coordinates.add(name)
+            data[name] = item.dimensions, np.asarray(first[name], item.dtype), item.all_attributes()
+    sizes = {
+        key: n
+        for name, item in variables.items()
+        for key, n in zip(item.dimensions, np.shape(first[name]), strict=True)
+    }
+    grid = {plain[name]: len(values) for name, values in axes.items()}
+    chosen = ({name: row[name] for name in variables} for row in rows)
+    values = over_grid(variables, grid, zip(np.ndindex(*grid.values()), chosen, strict=True), **sizes)
+    for name, item in variables.items():
+        data[name] = (*grid, *item.dimensions), values[name], item.all_attributes()
+    for name, along in axes.items():
         item = _COORDINATES.get(name, Variable((), "f8", f"parameter {name} of the model"))
-        data[plain[name]] = plain[name], values, item.all_attributes()
-    first, *others = (attributes for _, attributes in runs)
-    common = {key: value for key, value in first.items() if all(other.get(key) == value for other in others)}
-    common["summary"] = f"Runs over {', '.join(axes)}." if axes else first["summary"]
-    for name, (item, value) in run_coordinates(first).items():
+        data[plain[name]] = plain[name], along, item.all_attributes()
+    common = common_attributes(attributes)
+    if axes:
+        common["summary"] = f"Runs over {', '.join(axes)}."
+    for name, (item, value) in run_coordinates(attributes[0]).items():
         if name not in data and not common.keys().isdisjoint((f"law_{name}", f"chain_{name}")):
             coordinates.add(name)
             data[name] = (), value, item.all_attributes()

@@ -19,6 +19,7 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.provenance.record import git_commit
 from burridge_knopoff.provenance.sources import provenance
+from burridge_knopoff.running.solvers import SOLVERS
 from burridge_knopoff.study.formatting import format_count, text
 from burridge_knopoff.study.study import Study, all_points
 
@@ -113,7 +114,7 @@ def run_settings(study: Study) -> list[tuple[str, str]]:
     """Return names and values of the settings of the runs."""
     config = study.config
     solvers = ", ".join(f"{config['solver'][law]} ({law} law)" for law in study.laws)
-    if "rk4" in config["solver"].values():
+    if any(SOLVERS[name].has_fixed_step for name in config["solver"].values()):
         solvers += f", step {text(config['step'])}"
     transient, window = config["transient"], config["window"]
     first = {name: next(iter(values.values())) for name, values in study.parameters.items()}

@@ -41,7 +41,7 @@ def cost_of(model: Model, begun: ChainState, settings: Settings) -> tuple[float,
 
 def run_seconds(model: Model, begun: ChainState, settings: Settings) -> float:
     """Return an estimate of the CPU seconds of a run; begun : see `cost_of`."""
-    if settings.solver == "rk4":
+    if settings.has_fixed_step:
         return settings.duration / settings.step * model.blocks * SECONDS_OF_STEP
     return cost_of(model, begun, settings)[0] * settings.duration
 
@@ -71,7 +71,7 @@ def cost_note(model: Model, begun: ChainState, settings: Settings) -> str:
     Empty for a run of less than a minute, and for one with a fixed step.
     """
     seconds, memory = cost_of(model, begun, settings)
-    if settings.solver == "rk4" or seconds * settings.duration <= LONG:
+    if settings.has_fixed_step or seconds * settings.duration <= LONG:
         return ""
     whole = f"{_time(seconds)} per time unit, {_time(seconds * settings.duration)} for the run if they keep slipping"
     dense = is_dense(model.chain)

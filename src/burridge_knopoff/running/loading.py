@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from burridge_knopoff.model.model import LOADINGS, Model
 from burridge_knopoff.model.ranges import OneOf
+from burridge_knopoff.running.solvers import SOLVERS
 
 
 def check_loading(loading: str, model: Model, solver: str) -> None:
@@ -15,5 +16,6 @@ def check_loading(loading: str, model: Model, solver: str) -> None:
             f"loading: got 'quasistatic', expected steady: friction of the law {model.law.name} does not drop at the "
             "start of a slip, so a block at its threshold would never move"
         )
-    if solver != "series":
-        raise ValueError(f"loading: got 'quasistatic', expected steady with the solver {solver}; series allows both")
+    if not SOLVERS[solver].quasistatic:
+        allowed = " | ".join(name for name in SOLVERS if SOLVERS[name].quasistatic)
+        raise ValueError(f"loading: got 'quasistatic', expected steady with the solver {solver}; {allowed} allows both")

@@ -16,11 +16,11 @@ from burridge_knopoff.running.kernel_model import kernel_model
 from burridge_knopoff.running.loading import check_loading
 from burridge_knopoff.running.normal_modes import normal_modes
 from burridge_knopoff.running.section import SUM, Section
+from burridge_knopoff.running.solvers import RUN_SOLVERS, SOLVERS
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import MOST_NUMBERS, instance_of, real_array, real_number
 
 #: Solvers with a fixed step.
-FIXED_STEP_SOLVERS = ("rk4", "euler")
 
 # Real motion stays far below this rate: a slip of a block takes about one time unit or longer.
 EVENTS_PER_BLOCK_AND_UNIT = 1000
@@ -75,16 +75,17 @@ class Runner:
         loading: str = "steady",
     ) -> None:
         instance_of(model, Model, "model")
-        if solver == "map" and not model.has_closed_form:
+        kind = SOLVERS[solver]
+        if kind.closed_form and not model.has_closed_form:
+            others = " | ".join(name for name in RUN_SOLVERS if not SOLVERS[name].closed_form)
             raise ValueError(
-                "solver: got 'map', expected series | rk4: map needs a closed form, a friction law that is linear and "
+                f"solver: got {solver!r}, expected {others}: it needs a closed form, a friction law that is linear and "
                 "not too steep, in a uniform chain with open ends and without dashpots"
             )
         check_loading(loading, model, solver)
         self.model = model
         # A continued run repeats the steps of the whole run only if these are equal.
-        stepping = solver in FIXED_STEP_SOLVERS
-        self.step_key = model, solver, step if stepping else None, loading
+        self.step_key = model, solver, step if kind.has_fixed_step else None, loading
         blocks = model.blocks
         rate_limit = EVENTS_PER_BLOCK_AND_UNIT * blocks
         self.log = EventLog(blocks, events_from, keep_events, rate_limit, stops_only, MOST_NUMBERS)
@@ -94,10 +95,10 @@ class Runner:
             exponents = Exponents(blocks, 0 if perturbations is None else perturbations.shape[1], math.inf, NEVER)
         self.exponents = exponents
         self.kernel: Run | TimeStepping
-        if stepping:
-            self.kernel = TimeStepping(kernel_model(model), self.log, self.observer, step, solver == "euler")
+        if kind.has_fixed_step:
+            self.kernel = TimeStepping(kernel_model(model), self.log, self.observer, step, kind.order == 1)
         else:
-            choice = 0 if solver == "map" else -1 if groups is None else int(groups)
+            choice = 0 if kind.closed_form else -1 if groups is None else int(groups)
             self.kernel = Run(
                 kernel_model(model, loading),
                 self.log,
@@ -108,7 +109,7 @@ class Runner:
                 STEP_LIMIT,
                 model.v if loading == "quasistatic" else 0.0,
             )
-            if solver == "map":
+            if kind.closed_form:
                 self.kernel.use_modes(partial(normal_modes, model.chain))
         self.catalogue = catalogue
         if catalogue is not None:

@@ -13,9 +13,9 @@ from burridge_knopoff.model.model import START, STARTS
 from burridge_knopoff.model.ranges import Number, OneOf, Whole
 from burridge_knopoff.model.springs import MAXIMUM_BLOCKS
 from burridge_knopoff.running.section import SUM, Section, SectionRange
+from burridge_knopoff.running.solvers import RUN_SOLVERS, SOLVERS
 from burridge_knopoff.values import MOST_NUMBERS
 
-SOLVERS = ("series", "map", "rk4")
 EVENTS = ("none", "window", "all")
 
 #: The longest time allowed in a setting.
@@ -75,7 +75,7 @@ class Settings:
     """
 
     start: Annotated[str, OneOf(STARTS), START] = "moving"
-    solver: Annotated[str, OneOf(SOLVERS), "series, map (where the motion has a closed form) or rk4"] = "series"
+    solver: Annotated[str, OneOf(RUN_SOLVERS), "series, map (where the motion has a closed form) or rk4"] = "series"
     step: Annotated[float, Number(1e-9, 10.0), "step of rk4"] = 1e-3
     transient: Annotated[float, DURATION, "time before the averaging window"] = 3000.0
     window: Annotated[float, Number(1e-3, LONGEST), "time over which J is averaged"] = 7000.0
@@ -127,7 +127,7 @@ class Settings:
             allowed = f"at most {MOST_NUMBERS / (2.0 * blocks):.3g} with {blocks} blocks"
             raise refusal("lyapunov_exponents", self.lyapunov_exponents, allowed)
         self.section.check_chain(chain)
-        if self.solver == "rk4":
+        if self.has_fixed_step:
             check_step(self.step, LONGEST_STEP, self.duration, chain)
         # The number of events is not known in advance. Their tables have the same limit; a run that reaches it ends.
         numbers = (2.0 * blocks + 1.0) * min(self.trajectory, self.duration) / self.trajectory_sampling
@@ -138,6 +138,11 @@ class Settings:
     def exponent_count(self, chain: Chain) -> int:
         """Return the number of Lyapunov exponents that are computed."""
         return min(self.lyapunov_exponents, 2 * chain.blocks)
+
+    @property
+    def has_fixed_step(self) -> bool:
+        """Whether the solver advances by `step`, and computes no exponents."""
+        return SOLVERS[self.solver].has_fixed_step
 
     @property
     def duration(self) -> float:

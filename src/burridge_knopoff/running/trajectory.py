@@ -189,7 +189,7 @@ def _exponents(runner: Runner, settings: Settings, completed: bool) -> dict[str,
     error = np.full(count, np.nan)
     infinite = -1
     reason = missing_derivative(runner) if count else ""
-    if completed and count and settings.solver != "rk4" and not reason:
+    if completed and count and not settings.has_fixed_step and not reason:
         measured = runner.exponents.results()
         growth, duration = measured["growth"], measured["duration"]
         filled = duration > 0.0

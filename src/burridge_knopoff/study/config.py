@@ -26,7 +26,8 @@ from burridge_knopoff.model.sampling import SAMPLES
 from burridge_knopoff.motion.chain_settings import Sample, Watch
 from burridge_knopoff.motion.settings import ERRORS, MotionSettings
 from burridge_knopoff.running.section import SECTION_KEYS
-from burridge_knopoff.running.settings import SOLVERS, TIME, Settings
+from burridge_knopoff.running.settings import TIME, Settings
+from burridge_knopoff.running.solvers import RUN_SOLVERS
 from burridge_knopoff.study.paper import PAPER_A, PAPER_BASINS, PAPER_COMPARED, PAPER_LAWS, PAPER_PHASES
 from burridge_knopoff.study.stages import CHAIN_LENGTHS, STAGES
 
@@ -109,7 +110,7 @@ def _study_default(field: Field) -> Field:
 
 _SETTINGS, _SAMPLE, _CATALOGUE = fields_of(Settings), fields_of(Sample), fields_of(CatalogueSettings)
 _STATE = {name: replace(field, default=FOLLOWS) for name, field in fields_of(InitialState).items()}
-_SOLVER = OneOf(SOLVERS)
+_SOLVER = OneOf(RUN_SOLVERS)
 
 AGREEMENT = {
     "relative_tolerance": Field(

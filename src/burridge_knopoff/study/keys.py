@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.solvers import SOLVERS
 from burridge_knopoff.study.model import MODEL_KEYS
 from burridge_knopoff.study.study import Study
 
@@ -30,8 +31,8 @@ def other_length_keys(study: Study) -> list[str]:
 def run_keys(study: Study, law: str = "") -> list[str]:
     """Return the keys that define the runs of points, under one law or all, without the grid."""
     names = [name for name in fields_of(Settings) if name in study.config]
-    # Only rk4 has a step.
-    if "rk4" not in (study.config["solver"][name] for name in ([law] if law else study.laws)):
+    solvers = (study.config["solver"][name] for name in ([law] if law else study.laws))
+    if not any(SOLVERS[solver].has_fixed_step for solver in solvers):
         names.remove("step")
     law_keys = [f"laws.{law}", f"solver.{law}"] if law else ["laws", "solver"]
     return [*law_keys, *MODEL_KEYS[1:], *(name for name in names if name != "solver"), "a_digits"]

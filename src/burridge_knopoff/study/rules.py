@@ -23,7 +23,8 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.parameters import plain_name
 from burridge_knopoff.model.ranges import OneOf, Range, Several
 from burridge_knopoff.provenance.files import LONGEST_NAME
-from burridge_knopoff.running.settings import LONGEST_STEP, SOLVERS, Settings, shortest_step
+from burridge_knopoff.running.settings import LONGEST_STEP, Settings, shortest_step
+from burridge_knopoff.running.solvers import RUN_SOLVERS, SOLVERS
 from burridge_knopoff.study.config import SOME_VALUES, LawKeys, check_law_numbers
 from burridge_knopoff.study.grid import MAXIMUM_POINTS, values_of
 from burridge_knopoff.study.paper import PAPER_BASINS, PAPER_COMPARED, PAPER_PHASES
@@ -108,8 +109,8 @@ def fill_names(config: dict[str, Any]) -> None:
     law_names.form(config["figures"].setdefault("law", first), "figures.law")
     Several(law_names).form(config["chains"].setdefault("laws", [first]), "chains.laws")
     OneOf(tuple(config["initial"])).form(config["basins"].setdefault("initial", state), "basins.initial")
-    usual, by_law = (solver, {}) if isinstance(solver, str) else (SOLVERS[0], solver)
-    config["solver"] = _law_keys(OneOf(SOLVERS), dict.fromkeys(laws, usual)).form(by_law, "solver")
+    usual, by_law = (solver, {}) if isinstance(solver, str) else (RUN_SOLVERS[0], solver)
+    config["solver"] = _law_keys(OneOf(RUN_SOLVERS), dict.fromkeys(laws, usual)).form(by_law, "solver")
 
 
 def _law_keys(allowed: Range, usual: Mapping[str, Any]) -> Keys:
@@ -138,10 +139,10 @@ def check_models(
             for values in others:
                 with error_prefix(f"grid ({name} law, a = {a:g}): " if values else ""):
                     model = base.at(**values) if values else base
-                if solver == "map" and not model.has_closed_form:
-                    solver_names = " | ".join(solver for solver in SOLVERS if solver != "map")
+                if SOLVERS[solver].closed_form and not model.has_closed_form:
+                    solver_names = " | ".join(name for name in RUN_SOLVERS if not SOLVERS[name].closed_form)
                     raise refusal(
-                        f"solver.{name}", "map", f"{solver_names}: no closed form at a = {a:g}, {_reason(model)}"
+                        f"solver.{name}", solver, f"{solver_names}: no closed form at a = {a:g}, {_reason(model)}"
                     )
         if len(tapes) > 1 and all(tape == tapes[0] for tape in tapes):
             raise refusal(
@@ -205,7 +206,7 @@ def check_comparison(settings: Settings, chain: Chain, sets_step: bool) -> None:
         settings.check_chain(chain)
     except ValueError as error:
         least = shortest_step(settings.duration, chain)
-        if sets_step or settings.step >= least or settings.solver != "rk4":
+        if sets_step or settings.step >= least or not settings.has_fixed_step:
             raise ValueError(f"solvers.{error}, or without: [solvers]") from error
         key = "transient" if settings.transient > settings.window else "window"
         step = f", solvers.step of at least {least:g}" if least < LONGEST_STEP / chain.highest_rate else ""

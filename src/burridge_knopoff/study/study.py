@@ -17,7 +17,8 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.parameters import CHAIN_PARAMETERS, parameter_key, plain_name, set_chain_parameters
 from burridge_knopoff.proof.scope import is_covered
 from burridge_knopoff.running.command import simulate_command
-from burridge_knopoff.running.settings import SOLVERS, Settings
+from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.solvers import RUN_SOLVERS, SOLVERS
 from burridge_knopoff.study.grid import parameters_of
 from burridge_knopoff.study.model import model_of
 from burridge_knopoff.study.paper import PAPER_A
@@ -229,10 +230,9 @@ class Study:
 
     def other_solvers(self, law: str) -> list[str]:
         """Return the solvers, except that of the points, that apply to a law at the compared values of a."""
-        others = [solver for solver in SOLVERS if solver != self.config["solver"][law]]
-        if "map" in others and not all(self.model(law, a).has_closed_form for a in self.config["solvers"]["a"]):
-            others.remove("map")
-        return others
+        others = [solver for solver in RUN_SOLVERS if solver != self.config["solver"][law]]
+        has_closed_form = all(self.model(law, a).has_closed_form for a in self.config["solvers"]["a"])
+        return [solver for solver in others if has_closed_form or not SOLVERS[solver].closed_form]
 
     @property
     def compared_values(self) -> dict[str, float]:
@@ -260,9 +260,9 @@ class Study:
                 allowed = " | ".join(self.other_solvers(law))
                 raise ConfigError(f"{law}/{solver}: not a comparison of study {self.name}; expected {allowed}")
             config["step"] = config["solvers"]["step"]
-            if solver == "rk4":
+            if SOLVERS[solver].has_fixed_step:
                 config["lyapunov_exponents"] = 0
-        if config["solver"] != "rk4":
+        if not SOLVERS[config["solver"]].has_fixed_step:
             # The other solvers have no step, so that a change of the step must not repeat their points.
             config.pop("step", None)
         return settings_from_config(Settings, config)

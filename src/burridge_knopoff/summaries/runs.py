@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.columns import empty_columns
+from burridge_knopoff.dataset.columns import over_grid
 from burridge_knopoff.dataset.point import POINT_VARIABLES
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
@@ -88,16 +88,11 @@ def over_runs(
     function : takes these variables and the wildcards of the point; variables that it leaves out are missing
     sizes : of the further dimensions
     """
-    places = {f"parameter {k}": len(values) for k, values in enumerate(study.parameters.values())}
-    runs = {"law": len(study.laws), "initial": len(study.initial), **places}
-    dimensions = {
-        name: replace(item, dimensions=(*runs, *item.dimensions[len(RUN) :])) for name, item in variables.items()
-    }
-    values = empty_columns(dimensions, {**runs, **sizes})
-    for index, point in zip(np.ndindex(*runs.values()), all_points(study), strict=True):
-        for name, value in function(read_point(study, results, point, read), point).items():
-            values[name][index] = value
-    return values
+    grid = {name: len(values) for name, (_, values, _) in point_axes(study).items()}
+    own = {name: replace(item, dimensions=item.dimensions[len(RUN) :]) for name, item in variables.items()}
+    points = zip(np.ndindex(*grid.values()), all_points(study), strict=True)
+    rows = ((place, function(read_point(study, results, point, read), point)) for place, point in points)
+    return over_grid(own, grid, rows, **sizes)
 
 
 def summarize(

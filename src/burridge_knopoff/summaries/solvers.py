@@ -16,7 +16,7 @@ import xarray
 from burridge_knopoff.dataset.columns import empty_columns
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
-from burridge_knopoff.running.settings import SOLVERS
+from burridge_knopoff.running.solvers import RUN_SOLVERS
 from burridge_knopoff.running.status import STATUS_WORDS, Status
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.study import Study, all_points
@@ -69,7 +69,7 @@ def compare_solvers(config: Mapping[str, Any], results: Path) -> xarray.Dataset:
     """
     study = Study.of_keys({**config, "a": config["solvers"]["a"]})
     solvers = config["solver"]
-    coordinates = {**axes({"solver": SOLVER}, solver=SOLVERS), **point_axes(study)}
+    coordinates = {**axes({"solver": SOLVER}, solver=RUN_SOLVERS), **point_axes(study)}
     values = empty_columns(VARIABLES, {name: len(coordinates[name][1]) for name in _AXES})
     indices = np.ndindex(len(study.laws), len(study.initial), len(study.grid))
     for (i, *place), point in zip(indices, all_points(study), strict=True):
@@ -80,7 +80,7 @@ def compare_solvers(config: Mapping[str, Any], results: Path) -> xarray.Dataset:
             runs[solver] = read_point(study, results, {**point, "solver": solver}, _READ)
         for solver, run in runs.items():
             for name, value in _compare(run, reference).items():
-                values[name][i, SOLVERS.index(solver), *place] = value
+                values[name][i, RUN_SOLVERS.index(solver), *place] = value
     return summary(
         "Independent solvers of the same equations",
         VARIABLES,
