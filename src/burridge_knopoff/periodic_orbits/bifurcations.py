@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from scipy.optimize import brentq
 
@@ -54,8 +54,8 @@ class Bifurcation:
 
     value, error : parameter along which the branch was continued, and half the width of its bracket
     at : the orbit at the bifurcation; if the branch joins a branch of simpler orbits there, the simpler orbit
-    before, after : orbits on the branch on either side; `after` is None if the branch ends or joins a branch of simpler
-        orbits
+    before, after : orbits on the branch on either side, in the direction away from the start of the following; `after`
+        is None if the branch ends or joins a branch of simpler orbits
     is_turning_point : whether the branch turns back in the parameter there
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, locate_bifurcations, synchronized_orbit
@@ -121,9 +121,9 @@ class Bifurcation:
 
 
 def locate_bifurcations(branch: Sequence[BranchOrbit]) -> Iterator[Bifurcation]:
-    """Yield the bifurcations along a branch in order, each computed on demand.
+    """Yield the bifurcations along a branch in order, each computed on demand; `Branch.bifurcations` keeps them.
 
-    branch : as `follow` returns it; raises ValueError, one line, for anything else
+    branch : as `follow` returns it, or its orbits; raises ValueError, one line, for anything else
 
     Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.3 and 10.2;
     docs/bifurcations.md explains how the kinds are distinguished.
@@ -140,14 +140,25 @@ def locate_bifurcations(branch: Sequence[BranchOrbit]) -> Iterator[Bifurcation]:
 
 
 def _bifurcations(branch: Sequence[BranchOrbit]) -> Iterator[Bifurcation]:
-    for k, point in enumerate(branch):
-        following = branch[k + 1] if k + 1 < len(branch) else None
-        if point.is_grazing:
-            yield _grazing(point, following)
-        elif following is not None and following.reduced_orbit is not None:
-            yield from _branch_points(point, following)
-        elif following is not None:
-            yield from _roots(point, following)
+    # Orbits before the start, which alone is at no distance from another one, were followed in the other direction.
+    begun = next((k for k, point in enumerate(branch) if point.length == 0.0), 0)
+    if begun:
+        first = replace(branch[begun], tangent=-branch[begun].tangent)
+        backward = [first, *branch[begun - 1 :: -1]]
+        for k in range(begun, -1, -1):
+            yield from _bifurcations_next(backward, k)[::-1]
+    for k in range(begun, len(branch)):
+        yield from _bifurcations_next(branch, k)
+
+
+def _bifurcations_next(branch: Sequence[BranchOrbit], k: int) -> list[Bifurcation]:
+    """Return the bifurcations from an orbit of a branch up to the next one."""
+    point, following = branch[k], branch[k + 1] if k + 1 < len(branch) else None
+    if point.is_grazing:
+        return [_grazing(point, following)]
+    if following is None:
+        return []
+    return _roots(point, following) if following.reduced_orbit is None else _branch_points(point, following)
 
 
 def _grazing(point: BranchOrbit, following: BranchOrbit | None) -> Bifurcation:
@@ -219,9 +230,7 @@ def _branch_points(point: BranchOrbit, following: BranchOrbit) -> list[Bifurcati
     for upward in (True, False):
         candidates += [
             bifurcation
-            for bifurcation in locate_bifurcations(
-                follow(simple, around, parameter=point.line.parameter, upward=upward)
-            )
+            for bifurcation in locate_bifurcations(follow(simple, around, upward=upward, line=point.line))
             if bifurcation.kind == kind
         ]
     if not candidates:

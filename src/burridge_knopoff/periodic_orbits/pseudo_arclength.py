@@ -8,6 +8,7 @@ Reference: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Ch
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -131,13 +132,31 @@ def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
     return ParameterLine((parameter,), (value,), (min(longest, CHANGE / max(change, 1e-300)),), units=units)
 
 
+def line_within(model: Model, parameter: str, low: float, high: float) -> ParameterLine:
+    """Return the line along one parameter whose unit is the width of an interval, or the size of the parameter.
+
+    The size, that of the parameter in a model or its natural one, is the unit of an unbounded interval and of one of a
+    single value. It also limits the unit in wide and in narrow intervals.
+
+    Raises ValueError, one line, if the model has no parameter of this name with a single value.
+    """
+    value, natural = model.parameter(parameter), _natural_size(model, parameter)
+    unit = abs(value) or natural
+    if 0.0 < high - low < math.inf:
+        unit = min(max(high - low, PART * unit), LONGEST * max(abs(value), natural))
+    lower_bound = -value / unit if parameter == "a" else -math.inf
+    return ParameterLine((parameter,), (value,), (unit,), model.chain.own_units, lower_bound)
+
+
 def _natural_size(model: Model, parameter: str) -> float:
     """Return the natural size of a parameter, whatever its value, which may be 0.
 
-    It is the chain's own unit for a parameter of the chain, 1 for weakening and for one of the law, and 0 for v, whose
-    size is its value.
+    It is the chain's own unit for a and for a parameter of the chain, 1 for weakening and for one of the law, and 0 for
+    v, whose size is its value.
     """
     units, key = model.chain.own_units, parameter_key(parameter)
+    if parameter == "a":
+        return units.slope
     if parameter in model.law.parameters or key == "weakening":
         return 1.0
     if key == "threshold":
