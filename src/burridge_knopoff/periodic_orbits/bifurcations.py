@@ -21,7 +21,7 @@ from scipy.optimize import brentq
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.critical_values import MULTIPLIER_TESTS, critical_values
 from burridge_knopoff.periodic_orbits.flow import OrbitError
-from burridge_knopoff.periodic_orbits.following import follow
+from burridge_knopoff.periodic_orbits.following import CONTINUATION, follow
 from burridge_knopoff.periodic_orbits.hopf import hopf_bifurcations
 from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, orbit_of
@@ -39,6 +39,8 @@ ROUNDING = 1e-12
 
 # Range, in steps, in which the branch point is searched for around the point where a branch has joined another one.
 BRANCH_POINT_RANGE = 2.0
+# Least length of the largest step there, as a fraction of the range.
+CROSSING = 0.01
 
 # At a grazing a stick this short, in the chain's own unit, is the one whose duration vanishes, as a square root.
 NO_STICK = 1e-4
@@ -226,11 +228,16 @@ def _branch_points(point: BranchOrbit, following: BranchOrbit) -> list[Bifurcati
     if is_sliding(simple.model, simple.reference):
         return _hopf_point(point, around)
     kind = _branch_point_kind(point.orbit, simple)
+    # Steps are large enough to cross the range.
+    step = max(CONTINUATION.largest_step, CROSSING * reach / point.line.rates[0])
+    settings = replace(CONTINUATION, largest_step=step)
     candidates = []
     for upward in (True, False):
         candidates += [
             bifurcation
-            for bifurcation in locate_bifurcations(follow(simple, around, upward=upward, line=point.line))
+            for bifurcation in locate_bifurcations(
+                follow(simple, around, settings, parameter=point.line.parameter, upward=upward)
+            )
             if bifurcation.kind == kind
         ]
     if not candidates:

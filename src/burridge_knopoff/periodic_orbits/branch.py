@@ -14,7 +14,7 @@ from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bi
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.following import BranchEnd, ContinuationSettings, follow_side, interval_ends
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
-from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, line_within, step_along
+from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, step_along, width_of
 from burridge_knopoff.values import instance_of
 
 # Largest difference from the period of the first orbit, as a fraction of the range on the branch, where it is closed.
@@ -84,14 +84,20 @@ def follow_branch(
 ) -> Branch:
     """Return the branch of an orbit within an interval, with steps relative to it; see `burridge_knopoff.follow`."""
     ends = interval_ends(interval)
-    line = line_within(instance_of(orbit, PeriodicOrbit, "orbit").model, parameter, *ends)
+    width = width_of(instance_of(orbit, PeriodicOrbit, "orbit").model, parameter, *ends)
 
     def side(direction: bool) -> tuple[list[BranchOrbit], BranchEnd]:
         points, end = follow_side(
-            orbit, ends, settings, line, direction, lambda points: _has_closed(points) or is_complete(points)
+            orbit,
+            ends,
+            settings,
+            parameter,
+            direction,
+            lambda so_far: _has_closed(so_far) or is_complete(so_far),
+            width,
         )
         if end.reason == "complete" and _has_closed(points):
-            end = BranchEnd("closed", f"returns to {line.place(points[0].orbit.model)}")
+            end = BranchEnd("closed", f"returns to {points[0].line.place(points[0].orbit.model)}")
         return points, end
 
     not_followed = BranchEnd("start", "this side was not followed")
@@ -102,6 +108,8 @@ def follow_branch(
     if high.reason == "closed":
         return Branch(points, (high, high))
     others, low = side(False)
+    if low.reason == "closed":
+        return Branch(others, (low, low))
     return Branch([*others[:0:-1], *points], (low, high))
 
 

@@ -16,9 +16,14 @@ from burridge_knopoff.periodic_orbits.critical_values import critical_values
 from burridge_knopoff.periodic_orbits.floquet import check_derivative
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form, reduced_orbit
-from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
-from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, begin_branch, line_of, step_along
+from burridge_knopoff.periodic_orbits.pseudo_arclength import (
+    BranchOrbit,
+    begin_branch,
+    line_of,
+    relative_length,
+    step_along,
+)
 from burridge_knopoff.values import elements, instance_of, real_number
 
 # Distance, for v = 0.1 in the chain's own units, within which an orbit must return to its mirror image, or to itself
@@ -84,7 +89,6 @@ def follow(
     parameter: str = "a",
     upward: bool = True,
     is_complete: Callable[[list[BranchOrbit]], bool] = lambda points: False,
-    line: ParameterLine | None = None,
 ) -> list[BranchOrbit]:
     """Return the orbits of a branch, continued from one of them until a parameter leaves an interval.
 
@@ -94,35 +98,32 @@ def follow(
     parameter : a, v, a parameter of the law such as sigma, one of the chain such as coupling, or that of one block or
         spring such as `mass[3]` (`Model.at`)
     is_complete : called with all orbits so far after each orbit that does not graze; ends the branch if true
-    line : along the parameter, with the unit of lengths; by default that of `line_of`
 
     The end of a branch, errors and the source are those of `burridge_knopoff.follow`, which takes a model as well.
     """
-    return follow_side(
-        orbit,
-        interval,
-        settings,
-        line or line_of(instance_of(orbit, PeriodicOrbit, "orbit"), parameter),
-        upward,
-        is_complete,
-    )[0]
+    return follow_side(orbit, interval, settings, parameter, upward, is_complete)[0]
 
 
 def follow_side(
     orbit: PeriodicOrbit,
     interval: tuple[float, float],
     settings: ContinuationSettings,
-    line: ParameterLine,
+    parameter: str,
     upward: bool,
     is_complete: Callable[[list[BranchOrbit]], bool],
+    width: float | None = None,
 ) -> tuple[list[BranchOrbit], BranchEnd]:
-    """Return the same as `follow`, and why the branch ended."""
+    """Return the same as `follow`, and why the branch ended.
+
+    width : to which steps in the parameter are relative; by default they are in the unit of `line_of`
+    """
     low, high = interval_ends(interval)
     check_derivative(instance_of(orbit, PeriodicOrbit, "orbit"))
     instance_of(settings, ContinuationSettings, "settings")
     upward = TrueOrFalse().form(upward, "upward")
     if not callable(is_complete):
         raise refusal("is_complete", is_complete, "a function")
+    line = line_of(orbit, parameter)
     if not low <= line.value(orbit.model) <= high:
         raise OrbitError(f"{line.place(orbit.model)}: not within the range {low!r} to {high!r}")
     points = [begin_branch(reduced_orbit(orbit) or orbit, upward, line)]
@@ -140,13 +141,14 @@ def follow_side(
         return BranchEnd("complete", f"ends at {place}") if is_complete(points) else None
 
     while (reached := end()) is None:
-        candidate = smooth_step(points, length)
+        unit = 1.0 if width is None else 1.0 / relative_length(points[-1], width)
+        candidate = smooth_step(points, length * unit)
         if candidate is not None:
             path = [candidate]
             length = min(STEP_GROWTH * length, settings.largest_step)
         else:
-            path = approach_grazing(points, length)
-            length = max(0.1 * length, path[-1].length if path else 0.0)
+            path = approach_grazing(points, length * unit)
+            length = max(0.1 * length, path[-1].length / unit if path else 0.0)
         for point in path:
             simpler = point.reduced_orbit or _passed_orbit(points[-1], point)
             points.append(replace(point, reduced_orbit=simpler))
@@ -158,7 +160,7 @@ def follow_side(
             points.append(turned)
             length = settings.first_step
         elif points[-1].is_grazing or length < settings.smallest_step:
-            return points, _loss(points[-1], settings.smallest_step, low, high)
+            return points, _loss(points[-1], settings.smallest_step * unit, low, high)
     return points, reached
 
 

@@ -132,20 +132,27 @@ def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
     return ParameterLine((parameter,), (value,), (min(longest, CHANGE / max(change, 1e-300)),), units=units)
 
 
-def line_within(model: Model, parameter: str, low: float, high: float) -> ParameterLine:
-    """Return the line along one parameter whose unit is the width of an interval, or the size of the parameter.
+def width_of(model: Model, parameter: str, low: float, high: float) -> float:
+    """Return the width of an interval of a parameter, or the size of the parameter if it is unbounded or one value.
 
-    The size, that of the parameter in a model or its natural one, is the unit of an unbounded interval and of one of a
-    single value. It also limits the unit in wide and in narrow intervals.
+    The size is that of the value in a model, or the natural one. It also limits the width from both sides.
 
     Raises ValueError, one line, if the model has no parameter of this name with a single value.
     """
-    value, natural = model.parameter(parameter), _natural_size(model, parameter)
-    unit = abs(value) or natural
+    value, natural = abs(model.parameter(parameter)), _natural_size(model, parameter)
     if 0.0 < high - low < math.inf:
-        unit = min(max(high - low, PART * unit), LONGEST * max(abs(value), natural))
-    lower_bound = -value / unit if parameter == "a" else -math.inf
-    return ParameterLine((parameter,), (value,), (unit,), model.chain.own_units, lower_bound)
+        return min(max(high - low, PART * value), LONGEST * max(value, natural))
+    return value or natural
+
+
+def relative_length(point: BranchOrbit, width: float) -> float:
+    """Return how much the state and the parameter, relative to a width, change in a length along a branch.
+
+    Positions and velocities are relative to v/0.1 and in the chain's own units.
+    """
+    model, units = point.orbit.model, point.line.units
+    state = point.tangent[:-2] * units.velocity / (model.scale * units.state(model.blocks))
+    return float(np.hypot(np.linalg.norm(state), point.tangent[-1] * point.line.rates[0] / width))
 
 
 def _natural_size(model: Model, parameter: str) -> float:
