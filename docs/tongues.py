@@ -52,9 +52,9 @@ SHADES = {
 }
 VALUES, DETUNINGS = np.arange(0.005, 0.1001, 0.005), np.arange(0.0, 0.9001, 0.025)
 
-STEPS = ContinuationSettings(first_step=1e-3, largest_step=2e-2, smallest_step=1e-5)
+STEPS = ContinuationSettings(first_step=1e-3, largest_step=2e-2, smallest_step=1e-5, max_orbits=200)
 # Curves end in corners, around which only short steps lead.
-FINE = ContinuationSettings(first_step=1e-3, largest_step=5e-2, smallest_step=1e-7)
+FINE = ContinuationSettings(first_step=1e-3, largest_step=5e-2, smallest_step=1e-7, max_orbits=200)
 # Rotation numbers of the tongues, with an a in each and the revolutions of the middle block in a period.
 RATIOS = {"35/54": (0.0805, 54), "9/14": (0.155, 14), "7/11": (0.217, 11)}
 LINES = {"grazing": "-", "fold": "--", "Neimark–Sacker": ":"}
@@ -112,13 +112,12 @@ def loss(
     parameter: str,
     interval: tuple[float, float],
     upward: bool,
-    settings: ContinuationSettings = STEPS,
 ) -> Bifurcation:
     """Return the bifurcation along a parameter at which an orbit loses stability or its branch has a turning point."""
     branch = follow(
         orbit,
         interval,
-        settings,
+        STEPS,
         parameter=parameter,
         upward=upward,
         is_complete=lambda points: points[-1].multipliers.unstable_count > 0,
@@ -215,8 +214,7 @@ def rotation_tongues() -> dict[str, list[BifurcationCurve]]:
         orbits = [limit_cycle(model_of(a), state, settling=2000.0) for state in states]
         orbit = next(orbit for orbit in orbits if orbit.stop_counts[1] == revolutions)
         for upward in (True, False):
-            settings = ContinuationSettings(first_step=1e-4, largest_step=2e-3)
-            end = loss(orbit, "a", (a - 0.03, a + 0.03), upward, settings)
+            end = loss(orbit, "a", (a - 0.03, a + 0.03), upward)
             curve = follow_bifurcation(end, ("a", "coupling"), (0.9, 1.2), FINE)
             tongues.setdefault(name, []).append(describe(name, curve))
     return tongues

@@ -41,8 +41,9 @@ LENGTH = Number(0.0, 1e6, above=True)
 class ContinuationSettings:
     """Settings of a continuation: lengths of steps along the branch, mostly in the parameter, and the number of orbits.
 
-    Lengths of `follow` are fractions of the width of its interval, or of ten times the size of the parameter if that is
-    less; without an interval, fractions of the size of the parameter at the start.
+    Lengths of `follow` combine the change of the parameter, as a fraction of the width of the interval, and that of
+    positions and velocities, for v = 0.1 in the chain's own units. Without an interval, the size of the parameter at
+    the start takes the place of the width; ten times this size does where the interval is wider.
 
     Lengths of `follow_bifurcation` are in the chain's own unit of a, `Chain.own_units.slope`: 1 for the paper's chain,
     and 2 for a chain that moves half as fast, for which friction has to fall twice as steeply. Along another parameter
