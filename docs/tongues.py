@@ -112,12 +112,13 @@ def loss(
     parameter: str,
     interval: tuple[float, float],
     upward: bool,
+    settings: ContinuationSettings = STEPS,
 ) -> Bifurcation:
     """Return the bifurcation along a parameter at which an orbit loses stability or its branch has a turning point."""
     branch = follow(
         orbit,
         interval,
-        STEPS,
+        settings,
         parameter=parameter,
         upward=upward,
         is_complete=lambda points: points[-1].multipliers.unstable_count > 0,
@@ -164,10 +165,7 @@ def end_of_wrong_leader() -> BifurcationCurve:
     pushed = orbit.reference.position + np.array([1e-3, 0.0, -1e-3])
     state = ChainState(pushed, orbit.reference.velocity, orbit.reference.stuck)
     leading = limit_cycle(orbit.model, state, settling=6000.0)
-    ends = (
-        loss(leading, "mass[3]", (0.99, 1.01), upward, ContinuationSettings(first_step=1e-5))
-        for upward in (True, False)
-    )
+    ends = (loss(leading, "mass[3]", (0.99, 1.01), upward, ContinuationSettings()) for upward in (True, False))
     fold = next(end for end in ends if end.is_turning_point)
     return describe("one end leads", follow_bifurcation(fold, ("mass[3]", "a"), (0.08, 0.13), STEPS))
 
@@ -214,7 +212,7 @@ def rotation_tongues() -> dict[str, list[BifurcationCurve]]:
         orbits = [limit_cycle(model_of(a), state, settling=2000.0) for state in states]
         orbit = next(orbit for orbit in orbits if orbit.stop_counts[1] == revolutions)
         for upward in (True, False):
-            end = loss(orbit, "a", (a - 0.03, a + 0.03), upward)
+            end = loss(orbit, "a", (a - 0.03, a + 0.03), upward, ContinuationSettings())
             curve = follow_bifurcation(end, ("a", "coupling"), (0.9, 1.2), FINE)
             tongues.setdefault(name, []).append(describe(name, curve))
     return tongues

@@ -23,7 +23,7 @@ CLOSED = 1e-3
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Branch(Sequence[BranchOrbit]):
-    """The orbits of a branch in their order along it, a sequence of `BranchOrbit`s.
+    """The orbits of a branch in their order along it: a sequence, each a `BranchOrbit`.
 
     The side on which the parameter decreases at first comes first, from its end to the start, then the start and the
     other side. A closed branch goes round once, and it or a single side begins at the start.
