@@ -18,7 +18,6 @@ from matplotlib.patches import Patch
 from burridge_knopoff import (
     Bifurcation,
     BifurcationCurve,
-    Chain,
     ChainState,
     ContinuationSettings,
     Model,
@@ -27,7 +26,6 @@ from burridge_knopoff import (
     find_attractors,
     follow,
     follow_bifurcation,
-    law_of,
     limit_cycle,
     locate_bifurcations,
     mode_amplitudes,
@@ -52,9 +50,9 @@ SHADES = {
 }
 VALUES, DETUNINGS = np.arange(0.005, 0.1001, 0.005), np.arange(0.0, 0.9001, 0.025)
 
-STEPS = ContinuationSettings(first_step=1e-3, largest_step=2e-2, smallest_step=1e-5)
+STEPS = ContinuationSettings(first_step=1e-3, largest_step=2e-2, smallest_step=1e-5, max_orbits=200)
 # Curves end in corners, around which only short steps lead.
-FINE = ContinuationSettings(first_step=1e-3, largest_step=5e-2, smallest_step=1e-7)
+FINE = ContinuationSettings(first_step=1e-3, largest_step=5e-2, smallest_step=1e-7, max_orbits=200)
 # Rotation numbers of the tongues, with an a in each and the revolutions of the middle block in a period.
 RATIOS = {"35/54": (0.0805, 54), "9/14": (0.155, 14), "7/11": (0.217, 11)}
 LINES = {"grazing": "-", "fold": "--", "Neimark–Sacker": ":"}
@@ -65,7 +63,7 @@ Boundary = tuple[Bifurcation, BifurcationCurve, float]
 
 def model_of(a: float, d: float = 0.0) -> Model:
     """Return three blocks with a detuned last block."""
-    return Model(Chain(3), law_of("linearized", a)).at(**{"mass[3]": 1.0 + d})
+    return Model("linearized", a=a).at(**{"mass[3]": 1.0 + d})
 
 
 def motion(model: Model, state: ChainState) -> tuple[int, float, ChainState]:
@@ -82,7 +80,7 @@ def motion(model: Model, state: ChainState) -> tuple[int, float, ChainState]:
 def branch_one() -> tuple[np.ndarray, np.ndarray]:
     """Return the classes of branch 1 and the largest shares of a mode, each of shape (detunings, values of a)."""
     # `plus` reaches branch 1 at a = 0.03; from there the branch is followed in a.
-    first = simulate("linearized", 0.03, "plus", transient=0, window=6000, trajectory=0).final
+    first = simulate(Model("linearized", a=0.03), "plus", transient=0, window=6000, trajectory=0).final
     states = {}
     for side in (VALUES[VALUES >= 0.03], VALUES[VALUES < 0.03][::-1]):
         state = first
@@ -165,10 +163,7 @@ def end_of_wrong_leader() -> BifurcationCurve:
     pushed = orbit.reference.position + np.array([1e-3, 0.0, -1e-3])
     state = ChainState(pushed, orbit.reference.velocity, orbit.reference.stuck)
     leading = limit_cycle(orbit.model, state, settling=6000.0)
-    ends = (
-        loss(leading, "mass[3]", (0.99, 1.01), upward, ContinuationSettings(first_step=1e-5))
-        for upward in (True, False)
-    )
+    ends = (loss(leading, "mass[3]", (0.99, 1.01), upward, ContinuationSettings()) for upward in (True, False))
     fold = next(end for end in ends if end.is_turning_point)
     return describe("one end leads", follow_bifurcation(fold, ("mass[3]", "a"), (0.08, 0.13), STEPS))
 
@@ -210,13 +205,12 @@ def rotation_tongues() -> dict[str, list[BifurcationCurve]]:
     """Return the lower and the upper boundaries of tongues of branch 1 in (a, coupling), by rotation number."""
     tongues: dict[str, list[BifurcationCurve]] = {}
     for name, (a, revolutions) in RATIOS.items():
-        attractors, _ = find_attractors("linearized", a, starts=["plus"], samples=40, transient=2000, window=2000)
+        attractors, _ = find_attractors(model_of(a), starts=["plus"], samples=40, transient=2000, window=2000)
         states = [item.motion.state() for item in attractors if item.motion.kind.name == "PERIODIC"]
         orbits = [limit_cycle(model_of(a), state, settling=2000.0) for state in states]
         orbit = next(orbit for orbit in orbits if orbit.stop_counts[1] == revolutions)
         for upward in (True, False):
-            settings = ContinuationSettings(first_step=1e-4, largest_step=2e-3)
-            end = loss(orbit, "a", (a - 0.03, a + 0.03), upward, settings)
+            end = loss(orbit, "a", (a - 0.03, a + 0.03), upward, ContinuationSettings())
             curve = follow_bifurcation(end, ("a", "coupling"), (0.9, 1.2), FINE)
             tongues.setdefault(name, []).append(describe(name, curve))
     return tongues
@@ -233,7 +227,7 @@ def check_rotation(tongues: dict[str, list[BifurcationCurve]]) -> None:
                 if is_boundary(orbit):
                     locked = []
                     for side in (-1, 1):
-                        model = orbit.model.at(float(a) + side * size)
+                        model = orbit.model.at(a=float(a) + side * size)
                         start = orbit.reference
                         run = simulate(model, initial=start, transient=6000, window=100, lyapunov_exponents=0)
                         number, _ = rotation_number(model, run.final, 6000.0)

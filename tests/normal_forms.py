@@ -13,22 +13,21 @@ import numpy as np
 from burridge_knopoff import (
     Chain,
     ChainState,
-    ContinuationSettings,
     Model,
     PeriodicOrbit,
     Symmetry,
     find_periodic_orbit,
-    follow,
     locate_bifurcations,
 )
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation
 from burridge_knopoff.periodic_orbits.flow import mean_distance, new_runner, rate
+from burridge_knopoff.periodic_orbits.following import CONTINUATION, follow
 from burridge_knopoff.periodic_orbits.grazing_distances import GrazingDistances, distances_of
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 
 #: Every form has its bifurcation at this parameter a, which is CRITICAL + μ.
 CRITICAL = 0.1
-STEPS = ContinuationSettings(first_step=1e-3, largest_step=2e-3)
+STEPS = replace(CONTINUATION, first_step=1e-3, largest_step=2e-3)
 #: Chains of two and of three blocks without mirror symmetry.
 TWO, THREE = Chain(2, threshold=(1.0, 1.1)), Chain(3, threshold=(1.0, 1.1, 1.2))
 

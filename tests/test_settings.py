@@ -171,7 +171,7 @@ def test_a_setting_accepts_its_range_and_nothing_else(kind, name):
 @pytest.mark.parametrize(
     ("kind", "values", "key"),
     [
-        (ContinuationSettings, {"smallest_step": 2e-4}, "smallest_step"),
+        (ContinuationSettings, {"smallest_step": 2e-3}, "smallest_step"),
         (ContinuationSettings, {"smallest_step": 1.0}, "smallest_step"),
         (ContinuationSettings, {"first_step": 1e-10}, "smallest_step"),
         (ContinuationSettings, {"largest_step": 1e-10}, "smallest_step"),

@@ -34,9 +34,10 @@ Locking: `block_frequencies` returns the frequency of each block, and `mode_ampl
 chain's normal modes, which tell locked blocks from blocks that move in one mode.
 
 Bifurcations: `follow` continues a periodic orbit, or that on which a motion settles, in any parameter, with
-`ContinuationSettings`, and returns its branch as `BranchOrbit`s. `locate_bifurcations` finds each `Bifurcation` on the
-branch and its `BifurcationKind`. `hopf_bifurcations` returns each `HopfBifurcation` of uniform sliding, at which orbits
-without stops begin. `follow_bifurcation` continues a bifurcation in two parameters and returns a `BifurcationCurve`.
+`ContinuationSettings`, and returns its `Branch` of `BranchOrbit`s with each `Bifurcation` and its `BifurcationKind`.
+`locate_bifurcations` finds those of a part of a branch. `hopf_bifurcations` returns each `HopfBifurcation` of uniform
+sliding, at which orbits without stops begin. `follow_bifurcation` continues a bifurcation in two parameters and returns
+a `BifurcationCurve`.
 """
 
 import lazy_loader

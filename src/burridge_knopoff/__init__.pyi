@@ -46,6 +46,7 @@ from .periodic_orbits.bifurcation_curve import follow_bifurcation as follow_bifu
 from .periodic_orbits.bifurcation_kind import BifurcationKind as BifurcationKind
 from .periodic_orbits.bifurcations import Bifurcation as Bifurcation
 from .periodic_orbits.bifurcations import locate_bifurcations as locate_bifurcations
+from .periodic_orbits.branch import Branch as Branch
 from .periodic_orbits.floquet import Multipliers as Multipliers
 from .periodic_orbits.floquet import multipliers as multipliers
 from .periodic_orbits.flow import OrbitError as OrbitError

@@ -94,7 +94,7 @@ def test_arguments_that_do_not_go_together_are_refused(orbit, call, place):
 def test_a_closed_branch_ends_where_it_began():
     """The isola of `plus`: two grazings, each found once."""
     branch = follow(Model("linearized", a=0.08), (0.078, 0.084), initial="plus", parameter="a")
-    assert len(branch) < 40
+    assert len(branch) < 200
     bifurcations = [*locate_bifurcations(branch)]
     assert sorted(round(item.value, 5) for item in bifurcations) == [0.07938, 0.08133]
     again = follow(branch[0].orbit, (0.078, 0.084), upward=False, parameter="a")
@@ -102,4 +102,11 @@ def test_a_closed_branch_ends_where_it_began():
 
 
 def test_lengths_of_steps_by_name():
-    assert len(follow(Model("linearized", a=0.08), (0.078, 0.084), initial="plus", max_orbits=4, parameter="a")) == 4
+    assert (
+        len(
+            follow(
+                Model("linearized", a=0.08), (0.078, 0.084), initial="plus", upward=True, max_orbits=4, parameter="a"
+            )
+        )
+        == 4
+    )

@@ -76,6 +76,25 @@ def test_chaos_lies_on_none_of_the_orbits_that_it_passes_by(blocks, law, a, posi
     assert all(multipliers(orbit).unstable_count for orbit in passed)
 
 
+@pytest.mark.parametrize(
+    ("settling", "window", "words"),
+    [
+        (0.0, 3.0, "from the stops within 3, after 0 to settle: no block reaches them twice"),
+        (100.0, 50.0, "from the stops within 50, after 100 to settle: the closest return is at a distance of"),
+        (500.0, 8000.0, "; the distance from the stable orbit of period 157.245 there goes from"),
+    ],
+)
+def test_an_error_says_what_was_tried(settling, window, words, monkeypatch):
+    model = Model("linearized", a=0.08)
+    if window == 8000.0:
+        monkeypatch.setattr(module, "_is_on_orbit", lambda *_: False)
+    with pytest.raises(OrbitError) as caught:
+        limit_cycle(model, model.begin(PAPER_STATES["plus"]), settling, window)
+    assert str(caught.value).startswith("a = 0.08: no periodic orbit found from the stops within ")
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
 def test_an_unstable_orbit_is_that_of_a_motion_that_never_leaves_it():
     model = Model("linearized", a=0.09)
     orbit = limit_cycle(model, synchronized_orbit(model).reference)

@@ -1,13 +1,15 @@
 """How a branch continues, joins or passes a branch of simpler orbits, and where it ends."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, Model, Symmetry, follow, limit_cycle, synchronized_orbit
+from burridge_knopoff import Chain, ChainState, Model, Symmetry, limit_cycle, synchronized_orbit
 from burridge_knopoff.periodic_orbits import following
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import locate_bifurcations
-from burridge_knopoff.periodic_orbits.following import ContinuationSettings
+from burridge_knopoff.periodic_orbits.following import CONTINUATION, ContinuationSettings, follow
 from burridge_knopoff.periodic_orbits.parameter_line import line_along_a
 from burridge_knopoff.periodic_orbits.pseudo_arclength import begin_branch
 from tests.normal_forms import CRITICAL, border_collision, fold, on_line, orbit_at, pitchfork
@@ -89,7 +91,7 @@ def test_a_branch_must_begin_within_its_interval():
     """The orbit may lie exactly at an end of the interval; an interval runs from low to high."""
     orbit = limit_cycle(SLOW, synchronized_orbit(SLOW).reference)
     for a_range in ((0.08, 0.08), (0.08, 0.09), (0.07, 0.08)):
-        assert follow(orbit, a_range, ContinuationSettings(max_orbits=1), parameter="a")[0].orbit is orbit
+        assert follow(orbit, a_range, replace(CONTINUATION, max_orbits=1), parameter="a")[0].orbit is orbit
     with refused("interval: (0.09, 0.07)"):
         follow(orbit, (0.09, 0.07), parameter="a")
 
@@ -152,7 +154,7 @@ def test_a_branch_has_at_most_the_requested_number_of_orbits(most):
     orbit = orbit_at(border_collision(0.5, -0.4), -1e-5, -2e-5)
     (corner,) = (k for k, point in enumerate(follow(orbit, (0.09, 0.101), parameter="a")) if point.is_grazing)
     assert 2 < corner < 12
-    branch = follow(orbit, settings=ContinuationSettings(max_orbits=most), parameter="a")
+    branch = follow(orbit, settings=replace(CONTINUATION, max_orbits=most), parameter="a")
     assert len(branch) == most + (most == corner + 1)
     assert not branch[-1].is_grazing
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import BifurcationKind, Chain, Symmetry, follow, locate_bifurcations
+from burridge_knopoff import BifurcationKind, Chain, Symmetry, locate_bifurcations
+from burridge_knopoff.periodic_orbits.following import follow
 from tests import normal_forms
 from tests.normal_forms import CRITICAL, STEPS, antisymmetric, border_collision, followed, neimark_sacker, orbit_at
 

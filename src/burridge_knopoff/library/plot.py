@@ -16,6 +16,7 @@ from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.periodic_orbits.bifurcation_curve import BifurcationCurve
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation
+from burridge_knopoff.periodic_orbits.branch import Branch
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 from burridge_knopoff.values import each_instance_of
@@ -46,8 +47,8 @@ def plot(result: Any, axes: Axes | None = None) -> Figure:
         what `find_attractors` returns, or the list alone, and an `EdgeState`: positions x_1 and x_N at the returns, the
             stops of one block
         a `PeriodicOrbit`: U_i'(τ) in a period, and U_i' versus U_i − vτ
-        the list of `BranchOrbit`s that `follow` returns, or (this list, its `Bifurcation`s): ⟨J⟩ along the parameter,
-            solid where the orbit is stable; the period T if all orbits are synchronized
+        the `Branch` that `follow` returns, or a list of its `BranchOrbit`s, or (either, its `Bifurcation`s): ⟨J⟩ along
+            the parameter, solid where the orbit is stable; the period T if all orbits are synchronized
         a `BifurcationCurve`: the curve over its two parameters
         a file of a study in place of a Dataset: what `open_study` gives for its path
     axes : matplotlib axes to draw into, for a picture of one panel, such as those of an earlier picture
@@ -124,8 +125,8 @@ def _dataset_drawing(data: xarray.Dataset, attractors: xarray.Dataset | None) ->
 
 
 def _each(values: Any, kind: type) -> bool:
-    """Return whether a value is a list of at least one object, all of a class."""
-    return isinstance(values, list) and bool(values) and all(isinstance(value, kind) for value in values)
+    """Return whether a value is a list, or a branch, of at least one object, all of a class."""
+    return isinstance(values, list | Branch) and bool(values) and all(isinstance(value, kind) for value in values)
 
 
 def _without_axes(draw: Callable[[], Figure]) -> Callable[[Axes | None], Figure]:

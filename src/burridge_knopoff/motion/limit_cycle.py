@@ -58,7 +58,9 @@ def limit_cycle(model: Model, state: ChainState, settling: float = 0.0, window: 
     orbits.
 
     Raises OrbitError if the motion does not return within the window or lies on no isolated periodic orbit, as if it
-    settles on uniform sliding, or if orbits without stops have any amplitude (under a law that is linear in speed).
+    settles on uniform sliding, or if orbits without stops have any amplitude (under a law that is linear in speed). It
+    gives the times, the closest return of a state (distances are for v = 0.1 in the chain's own units), and whether the
+    motion approaches the orbit found there.
     Raises ValueError for a time or a state that is not allowed.
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, simulate
@@ -85,11 +87,33 @@ def orbit_of_motion(model: Model, state: ChainState, settling: float, window: fl
     if orbit is None and not (times > settling + 0.5 * window).any():
         section = "velocity maxima"
         orbit = _orbit_without_stops(model, runner.state(), window)
+        if orbit is None:
+            times, values = velocity_maxima(model, runner.state(), 0.0, window)
     if orbit is None:
-        raise OrbitError(
-            f"{model.place}: no periodic orbit found within {window:g}, from returns at the {section} of a block"
-        )
+        tried = f"from the {section} within {window:g}, after {settling:g} to settle"
+        raise OrbitError(f"{model.place}: no periodic orbit found {tried}: {_failure(model, times, values)}")
     return orbit
+
+
+def _failure(model: Model, times: np.ndarray, values: np.ndarray) -> str:
+    """Return in words why a motion lies on no periodic orbit; times, values : see `orbit_of_events`."""
+    _, returns = _returns(model, times, values)
+    if not returns:
+        return "no block reaches them twice"
+    closest, time = min((reached, time) for time, _, reached in returns)
+    words = f"the closest return is at a distance of {closest:.1e} after {time:.6g}"
+    if closest > CLOSENESS[-1]:
+        return f"{words}, more than {CLOSENESS[-1]:g}"
+    for start, time, symmetry, _ in _close_returns(model, times, values):
+        try:
+            orbit = find_periodic_orbit(model, start, time, symmetry)
+        except OrbitError:
+            continue
+        kind = "unstable" if unstable_count(orbit) else "stable"
+        first, last = _cycle_distances(orbit, values)
+        words += f"; the distance from the {kind} orbit of period {orbit.period:.6g} there goes from"
+        return f"{words} {first:.1e} to {last:.1e}"
+    return f"{words}, and Newton's method finds no orbit there"
 
 
 def _orbit_without_stops(model: Model, state: ChainState, window: float) -> PeriodicOrbit | None:
@@ -141,29 +165,49 @@ def _close_returns(
 
     times, values : see `orbit_of_events`
     """
+    state, returns = _returns(model, times, values)
+    for size in CLOSENESS:
+        for time, symmetry, reached in returns:
+            if reached <= size:
+                yield state_of(state), time, symmetry, size
+                break
+
+
+def _returns(
+    model: Model, times: np.ndarray, values: np.ndarray
+) -> tuple[np.ndarray, list[tuple[float, Symmetry, float]]]:
+    """Return a state on the section and the time, symmetry and distance of each return to it, in order of time.
+
+    times, values : see `orbit_of_events`
+    """
     stops = values[:, 1] == 0
     if not stops.any():
-        return
-    scale = model.state_scale
+        return np.empty(0), []
     block = int(values[stops, 0].min())
     other = model.blocks + 1 - block
     section_stops = np.flatnonzero(stops & (values[:, 0] == block))
     state, begun = values[section_stops[0], 2:], times[section_stops[0]]
-    repeated = [(times[k] - begun, Symmetry.ASYMMETRIC, values[k, 2:]) for k in section_stops[1:]]
+
+    def distances(states: np.ndarray) -> np.ndarray:
+        return np.abs((states - state) / model.state_scale).max(axis=1)
+
+    kind = Symmetry.ASYMMETRIC
+    returned, mirrored = section_stops[1:], np.empty(0, dtype=int)
+    order = mirror_order(model.blocks)
     if model.chain.is_mirror_symmetric:
-        order = mirror_order(model.blocks)
-        if np.abs((state - state[order]) / scale).max() <= CLOSENESS[0]:
-            repeated = [(time, Symmetry.SYNCHRONIZED, at) for time, _, at in repeated]
+        if distances(state[None, order])[0] <= CLOSENESS[0]:
+            kind = Symmetry.SYNCHRONIZED
         else:
             soonest = begun + MIN_MIRROR_TIME * (times[section_stops[1:2]] - begun).sum()
             mirrored = np.flatnonzero(stops & (values[:, 0] == other) & (times > soonest))
-            repeated += [(times[k] - begun, Symmetry.SYMMETRIC, values[k, 2:][order]) for k in mirrored]
-    repeated.sort(key=lambda item: item[0])
-    for size in CLOSENESS:
-        for time, symmetry, at in repeated:
-            if np.abs((at - state) / scale).max() <= size:
-                yield state_of(state), float(time), symmetry, size
-                break
+    found: list[tuple[float, Symmetry, float]] = []
+    for places, symmetry, states in (
+        (returned, kind, values[returned, 2:]),
+        (mirrored, Symmetry.SYMMETRIC, values[mirrored, 2:][:, order]),
+    ):
+        later = (times[places] - begun).tolist()
+        found += [(time, symmetry, at) for time, at in zip(later, distances(states).tolist(), strict=True)]
+    return state, sorted(found, key=lambda item: item[0])
 
 
 def _is_on_stable_orbit(orbit: PeriodicOrbit, first: float, last: float, size: float) -> bool:

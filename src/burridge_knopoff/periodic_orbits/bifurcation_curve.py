@@ -29,7 +29,7 @@ from burridge_knopoff.periodic_orbits.pseudo_arclength import tangent_of
 from burridge_knopoff.values import instance_of
 
 #: Steps along a curve, in the units of `follow`.
-STEPS = ContinuationSettings(first_step=1e-3, largest_step=2e-2, smallest_step=1e-7)
+STEPS = ContinuationSettings(first_step=1e-3, largest_step=2e-2, smallest_step=1e-7, max_orbits=200)
 
 # Cosine of the largest angle between successive steps of a curve, and the length down to which larger angles shorten
 # the step.

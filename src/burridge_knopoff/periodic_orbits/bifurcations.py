@@ -14,14 +14,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from scipy.optimize import brentq
 
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.critical_values import MULTIPLIER_TESTS, critical_values
 from burridge_knopoff.periodic_orbits.flow import OrbitError
-from burridge_knopoff.periodic_orbits.following import follow
+from burridge_knopoff.periodic_orbits.following import CONTINUATION, follow
 from burridge_knopoff.periodic_orbits.hopf import hopf_bifurcations
 from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, orbit_of
@@ -39,6 +39,8 @@ ROUNDING = 1e-12
 
 # Range, in steps, in which the branch point is searched for around the point where a branch has joined another one.
 BRANCH_POINT_RANGE = 2.0
+# Least length of the largest step there, as a fraction of the range.
+CROSSING = 0.01
 
 # At a grazing a stick this short, in the chain's own unit, is the one whose duration vanishes, as a square root.
 NO_STICK = 1e-4
@@ -54,8 +56,8 @@ class Bifurcation:
 
     value, error : parameter along which the branch was continued, and half the width of its bracket
     at : the orbit at the bifurcation; if the branch joins a branch of simpler orbits there, the simpler orbit
-    before, after : orbits on the branch on either side; `after` is None if the branch ends or joins a branch of simpler
-        orbits
+    before, after : orbits on the branch on either side, in the direction away from the start of the following; `after`
+        is None if the branch ends or joins a branch of simpler orbits
     is_turning_point : whether the branch turns back in the parameter there
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, locate_bifurcations, synchronized_orbit
@@ -121,9 +123,9 @@ class Bifurcation:
 
 
 def locate_bifurcations(branch: Sequence[BranchOrbit]) -> Iterator[Bifurcation]:
-    """Yield the bifurcations along a branch in order, each computed on demand.
+    """Yield the bifurcations along a branch in order, each computed on demand; `Branch.bifurcations` keeps them.
 
-    branch : as `follow` returns it; raises ValueError, one line, for anything else
+    branch : as `follow` returns it, or its orbits; raises ValueError, one line, for anything else
 
     Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.3 and 10.2;
     docs/bifurcations.md explains how the kinds are distinguished.
@@ -140,14 +142,25 @@ def locate_bifurcations(branch: Sequence[BranchOrbit]) -> Iterator[Bifurcation]:
 
 
 def _bifurcations(branch: Sequence[BranchOrbit]) -> Iterator[Bifurcation]:
-    for k, point in enumerate(branch):
-        following = branch[k + 1] if k + 1 < len(branch) else None
-        if point.is_grazing:
-            yield _grazing(point, following)
-        elif following is not None and following.reduced_orbit is not None:
-            yield from _branch_points(point, following)
-        elif following is not None:
-            yield from _roots(point, following)
+    # Orbits before the start, which alone is at no distance from another one, were followed in the other direction.
+    begun = next((k for k, point in enumerate(branch) if point.length == 0.0), 0)
+    if begun:
+        first = replace(branch[begun], tangent=-branch[begun].tangent)
+        backward = [first, *branch[begun - 1 :: -1]]
+        for k in range(begun, -1, -1):
+            yield from _bifurcations_next(backward, k)[::-1]
+    for k in range(begun, len(branch)):
+        yield from _bifurcations_next(branch, k)
+
+
+def _bifurcations_next(branch: Sequence[BranchOrbit], k: int) -> list[Bifurcation]:
+    """Return the bifurcations from an orbit of a branch up to the next one."""
+    point, following = branch[k], branch[k + 1] if k + 1 < len(branch) else None
+    if point.is_grazing:
+        return [_grazing(point, following)]
+    if following is None:
+        return []
+    return _roots(point, following) if following.reduced_orbit is None else _branch_points(point, following)
 
 
 def _grazing(point: BranchOrbit, following: BranchOrbit | None) -> Bifurcation:
@@ -215,12 +228,15 @@ def _branch_points(point: BranchOrbit, following: BranchOrbit) -> list[Bifurcati
     if is_sliding(simple.model, simple.reference):
         return _hopf_point(point, around)
     kind = _branch_point_kind(point.orbit, simple)
+    # Steps are large enough to cross the range.
+    step = max(CONTINUATION.largest_step, CROSSING * reach / point.line.rates[0])
+    settings = replace(CONTINUATION, largest_step=step)
     candidates = []
     for upward in (True, False):
         candidates += [
             bifurcation
             for bifurcation in locate_bifurcations(
-                follow(simple, around, parameter=point.line.parameter, upward=upward)
+                follow(simple, around, settings, parameter=point.line.parameter, upward=upward)
             )
             if bifurcation.kind == kind
         ]

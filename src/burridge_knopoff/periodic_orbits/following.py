@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal, NamedTuple
 
 from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.fields import check_fields, settings
@@ -17,7 +17,13 @@ from burridge_knopoff.periodic_orbits.floquet import check_derivative
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form, reduced_orbit
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
-from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, begin_branch, line_of
+from burridge_knopoff.periodic_orbits.pseudo_arclength import (
+    BranchOrbit,
+    begin_branch,
+    line_of,
+    relative_length,
+    step_along,
+)
 from burridge_knopoff.values import elements, instance_of, real_number
 
 # Distance, for v = 0.1 in the chain's own units, within which an orbit must return to its mirror image, or to itself
@@ -33,25 +39,30 @@ LENGTH = Number(0.0, 1e6, above=True)
 @settings
 @dataclass(frozen=True)
 class ContinuationSettings:
-    """Settings of the continuation: lengths of steps along the branch, mostly in a, and the maximum number of orbits.
+    """Settings of a continuation: lengths of steps along the branch, mostly in the parameter, and the number of orbits.
 
-    Lengths in a are in the chain's own unit of a, `Chain.own_units.slope`: 1 for the paper's chain, and 2 for a chain
-    that moves half as fast, for which friction has to fall twice as steeply.
+    Lengths of `follow` combine the change of the parameter, as a fraction of the width of the interval, and that of
+    positions and velocities, for v = 0.1 in the chain's own units. Without an interval, the size of the parameter at
+    the start takes the place of the width; ten times this size does where the interval is wider.
 
-    Along another parameter, the unit of length is the change that moves the return of the orbit by about as much as a
-    change of 1 in a does for a short orbit. For long orbits, whose return changes faster, the unit is smaller.
+    Lengths of `follow_bifurcation` are in the chain's own unit of a, `Chain.own_units.slope`: 1 for the paper's chain,
+    and 2 for a chain that moves half as fast, for which friction has to fall twice as steeply. Along another parameter
+    their unit is the change that moves the return of the orbit by about as much as a change of 1 in a does for a short
+    orbit; for long orbits, whose return changes faster, it is smaller.
 
     Raises ValueError, one line, for anything out of range, and for a smallest step above the first or the largest one.
 
     >>> from burridge_knopoff import ContinuationSettings
     >>> ContinuationSettings(max_orbits=20).largest_step
-    0.0005
+    0.005
     """
 
-    first_step: Annotated[float, LENGTH, "length of the first step, and of the first step after a grazing"] = 1e-4
-    largest_step: Annotated[float, LENGTH, "largest length of a step"] = 5e-4
-    smallest_step: Annotated[float, LENGTH, "length of a step below which the branch is given up"] = 1e-9
-    max_orbits: Annotated[int, Whole(1, 10**9), "largest number of orbits of a branch"] = 200
+    first_step: Annotated[float, LENGTH, "length of the first step, and of the first step after a grazing"] = 1e-3
+    largest_step: Annotated[float, LENGTH, "largest length of a step"] = 5e-3
+    smallest_step: Annotated[float, LENGTH, "length of a step below which the branch is given up"] = 1e-8
+    max_orbits: Annotated[int, Whole(1, 10**9), "largest number of orbits of a branch, on each side of its start"] = (
+        1000
+    )
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -60,7 +71,15 @@ class ContinuationSettings:
                 raise refusal("smallest_step", self.smallest_step, f"at most {limit} ({most:g})")
 
 
-CONTINUATION = ContinuationSettings()
+#: Lengths in the units of `line_of`.
+CONTINUATION = ContinuationSettings(first_step=1e-4, largest_step=5e-4, smallest_step=1e-9, max_orbits=200)
+
+
+class BranchEnd(NamedTuple):
+    """Why a branch ends, see `Branch`: a word, and the place or the failure in words."""
+
+    reason: Literal["bound", "fold", "joined", "closed", "complete", "orbits", "lost", "start"]
+    message: str
 
 
 def follow(
@@ -83,6 +102,22 @@ def follow(
 
     The end of a branch, errors and the source are those of `burridge_knopoff.follow`, which takes a model as well.
     """
+    return follow_side(orbit, interval, settings, parameter, upward, is_complete)[0]
+
+
+def follow_side(
+    orbit: PeriodicOrbit,
+    interval: tuple[float, float],
+    settings: ContinuationSettings,
+    parameter: str,
+    upward: bool,
+    is_complete: Callable[[list[BranchOrbit]], bool],
+    width: float | None = None,
+) -> tuple[list[BranchOrbit], BranchEnd]:
+    """Return the same as `follow`, and why the branch ended.
+
+    width : to which steps in the parameter are relative; by default they are in the unit of `line_of`
+    """
     low, high = interval_ends(interval)
     check_derivative(instance_of(orbit, PeriodicOrbit, "orbit"))
     instance_of(settings, ContinuationSettings, "settings")
@@ -95,31 +130,58 @@ def follow(
     points = [begin_branch(reduced_orbit(orbit) or orbit, upward, line)]
     length = settings.first_step
 
-    def continues() -> bool:
-        return len(points) < settings.max_orbits and low <= points[-1].value <= high and not is_complete(points)
+    def end() -> BranchEnd | None:
+        place = line.place(points[-1].orbit.model)
+        if not low <= points[-1].value <= high:
+            if (points[-1].value > high) == upward:
+                return BranchEnd("bound", f"leaves the interval at {place}")
+            turn = max(points, key=lambda point: point.value if upward else -point.value)
+            return BranchEnd("fold", f"turns back at {line.place(turn.orbit.model)}, leaves the interval at {place}")
+        if len(points) >= settings.max_orbits:
+            return BranchEnd("orbits", f"{len(points)} orbits end at {place}")
+        return BranchEnd("complete", f"ends at {place}") if is_complete(points) else None
 
-    while continues():
-        candidate = smooth_step(points, length)
+    while (reached := end()) is None:
+        unit = 1.0 if width is None else 1.0 / relative_length(points[-1], width)
+        candidate = smooth_step(points, length * unit)
         if candidate is not None:
             path = [candidate]
             length = min(STEP_GROWTH * length, settings.largest_step)
         else:
-            path = approach_grazing(points, length)
-            length = max(0.1 * length, path[-1].length if path else 0.0)
+            path = approach_grazing(points, length * unit)
+            length = max(0.1 * length, path[-1].length / unit if path else 0.0)
         for point in path:
             simpler = point.reduced_orbit or _passed_orbit(points[-1], point)
             points.append(replace(point, reduced_orbit=simpler))
-            if simpler is not None or not (point is path[-1] or continues()):
-                return points
-        if points[-1].is_grazing:
-            turned = switch_branch(points[-1])
-            if turned is None:
-                break
+            if simpler is not None:
+                return points, BranchEnd("joined", f"joins simpler orbits at {line.place(simpler.model)}")
+            if point is not path[-1] and (reached := end()) is not None:
+                return points, reached
+        if points[-1].is_grazing and (turned := switch_branch(points[-1])) is not None:
             points.append(turned)
             length = settings.first_step
-        elif length < settings.smallest_step:
-            break
-    return points
+        elif points[-1].is_grazing or length < settings.smallest_step:
+            return points, _loss(points[-1], settings.smallest_step * unit, low, high)
+    return points, reached
+
+
+def _loss(point: BranchOrbit, length: float, low: float, high: float) -> BranchEnd:
+    """Return why no step of a length continues a branch within an interval."""
+    model, line = point.orbit.model, point.line
+    place = line.place(model)
+    try:
+        ahead = line.value(line.model(model, line.coordinate(model) + length * float(point.tangent[-1])))
+    except OrbitError as error:
+        return BranchEnd("bound", f"no model beyond {place}: {error}")
+    if not low <= ahead <= high:
+        return BranchEnd("bound", f"reaches the end of the interval at {place}")
+    if point.is_grazing:
+        return BranchEnd("lost", f"{place}: no orbit is found beyond the grazing")
+    try:
+        step_along(point, length)
+    except OrbitError as error:
+        return BranchEnd("lost", str(error))
+    return BranchEnd("lost", f"{place}: stops and starts change within a step of {length:g}")
 
 
 def interval_ends(interval: Any) -> tuple[float, float]:

@@ -8,6 +8,7 @@ Reference: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Ch
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -131,13 +132,38 @@ def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
     return ParameterLine((parameter,), (value,), (min(longest, CHANGE / max(change, 1e-300)),), units=units)
 
 
+def width_of(model: Model, parameter: str, low: float, high: float) -> float:
+    """Return the width of an interval of a parameter, or the size of the parameter if it is unbounded or one value.
+
+    The size is that of the value in a model, or the natural one. It also limits the width from both sides.
+
+    Raises ValueError, one line, if the model has no parameter of this name with a single value.
+    """
+    value, natural = abs(model.parameter(parameter)), _natural_size(model, parameter)
+    if 0.0 < high - low < math.inf:
+        return min(max(high - low, PART * value), LONGEST * max(value, natural))
+    return value or natural
+
+
+def relative_length(point: BranchOrbit, width: float) -> float:
+    """Return how much the state and the parameter, relative to a width, change in a length along a branch.
+
+    Positions and velocities are relative to v/0.1 and in the chain's own units.
+    """
+    model, units = point.orbit.model, point.line.units
+    state = point.tangent[:-2] * units.velocity / (model.scale * units.state(model.blocks))
+    return float(np.hypot(np.linalg.norm(state), point.tangent[-1] * point.line.rates[0] / width))
+
+
 def _natural_size(model: Model, parameter: str) -> float:
     """Return the natural size of a parameter, whatever its value, which may be 0.
 
-    It is the chain's own unit for a parameter of the chain, 1 for weakening and for one of the law, and 0 for v, whose
-    size is its value.
+    It is the chain's own unit for a and for a parameter of the chain, 1 for weakening and for one of the law, and 0 for
+    v, whose size is its value.
     """
     units, key = model.chain.own_units, parameter_key(parameter)
+    if parameter == "a":
+        return units.slope
     if parameter in model.law.parameters or key == "weakening":
         return 1.0
     if key == "threshold":

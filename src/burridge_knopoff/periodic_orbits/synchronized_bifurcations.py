@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import brentq
@@ -18,7 +19,7 @@ from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bi
 from burridge_knopoff.periodic_orbits.critical_values import critical_values
 from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError, new_runner, state_after
-from burridge_knopoff.periodic_orbits.following import CONTINUATION, ContinuationSettings, follow
+from burridge_knopoff.periodic_orbits.following import CONTINUATION, follow
 from burridge_knopoff.periodic_orbits.grazing_distances import grazing_distances
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits, nearby_orbit
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
@@ -61,7 +62,8 @@ def _each_bifurcation(orbits: KnownOrbits) -> Iterator[Bifurcation]:
     (first, high), gap = (size * end for end in RANGE), size * RESTART_GAP
     # `follow` measures its steps in the chain's own unit.
     share = size / orbits.model.chain.own_units.slope
-    settings = ContinuationSettings(
+    settings = replace(
+        CONTINUATION,
         first_step=share * FIRST_STEP,
         largest_step=share * LARGEST_STEP,
         smallest_step=share * CONTINUATION.smallest_step,
