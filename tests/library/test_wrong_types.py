@@ -144,20 +144,22 @@ def test_every_public_function_is_tried():
     assert public == set(CALLS)
 
 
-@pytest.mark.parametrize(("name", "argument"), [(name, key) for name, arguments in CALLS.items() for key in arguments])
-def test_a_wrong_type_is_refused_in_one_line(name, argument):
-    call = getattr(burridge_knopoff, name)
-    count = 0
-    for wrong in WRONG:
-        try:
-            call(**{**CALLS[name], argument: wrong})
-        except (ValueError, FileNotFoundError) as error:
-            text = str(error)
-            assert "\n" not in text, text
-            assert len(text) < 400, text
-            count += 1
-    # The others are allowed: None where there is a default, a number or a text where one is taken.
-    assert count >= len(WRONG) - 3
+def test_a_wrong_type_is_refused_in_one_line():
+    """But where it is allowed: None where there is a default, a number or a text where one is taken."""
+    lenient = []
+    for name, arguments in CALLS.items():
+        call = getattr(burridge_knopoff, name)
+        for argument in arguments:
+            count = 0
+            for wrong in WRONG:
+                try:
+                    call(**{**arguments, argument: wrong})
+                except (ValueError, FileNotFoundError) as error:
+                    text = str(error)
+                    count += "\n" not in text and len(text) < 400
+            if count < len(WRONG) - 3:
+                lenient.append((name, argument))
+    assert lenient == []
 
 
 #: Methods with numbers that are settings, and arguments that they take.
@@ -231,39 +233,45 @@ OF_METHODS = [
 ]
 
 
-@pytest.mark.parametrize(("name", "argument"), [*NUMBERS, *OF_METHODS])
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 0, -1, "x", None, True, 1j])
-def test_a_number_that_is_none_is_refused(name, argument, value):
+def test_a_number_that_is_none_is_refused(value):
     """Every public function refuses it in a line that names the argument; 0 and negative numbers may be allowed."""
+    wrong = {
+        f"{name}.{argument}": words
+        for name, argument in [*NUMBERS, *OF_METHODS]
+        if (words := answer(name, argument, value)) is not None
+    }
+    assert wrong == {}
+
+
+def answer(name, argument, value):
+    """Return what is wrong with the answer of a function to a value of one argument; None if it is right."""
     owner, arguments = METHODS[name]() if name in METHODS else (burridge_knopoff, CALLS[name])
     call = getattr(owner, name.rpartition(".")[2])
     parameter = inspect.signature(call).parameters.get(argument)
-    truth = parameter is not None and str(parameter.annotation).startswith("bool")
+    truth = parameter is not None and str(parameter.annotation) in ("bool", "bool | None")
     default = parameter.default if parameter is not None else None
-    message = None
     try:
         call(**{**arguments, argument: value})
     except ValueError as error:
         message = str(error)
-    except OrbitError:
-        assert value in (0, -1)
-    if message is not None:
-        assert "\n" not in message
-        assert value in (0, -1, default) or argument in message.partition(":")[0], message
-    elif value is not default and (truth or value is True):
-        assert truth == (value is True)
-    else:
-        # The range of a slope may be open.
-        assert value == default or value in (0, -1) or (argument == "high" and value == math.inf)
+        is_named = value in (0, -1, default) or argument in message.partition(":")[0]
+        is_allowed = not isinstance(error, OrbitError) or value in (0, -1)
+        return None if is_named and is_allowed and "\n" not in message else message
+    if truth or value is True:
+        return None if truth == (value is True) or value == default else "accepted"
+    # The range of a slope may be open.
+    is_right = value == default or value in (0, -1) or (argument == "high" and value == math.inf)
+    return None if is_right else "accepted"
 
 
-@pytest.mark.parametrize(("name", "argument"), INTERVALS)
 @pytest.mark.parametrize(
     "ends", [(math.nan, 1.0), (0.0, math.nan), (2.0, 1.0), ("x", 1.0), (None, 1.0), (True, 2.0), (1.0,), 0.5]
 )
-def test_ends_that_are_no_interval_are_refused(name, argument, ends):
-    with refused(argument):
-        getattr(burridge_knopoff, name)(**{**CALLS[name], argument: ends})
+def test_ends_that_are_no_interval_are_refused(ends):
+    for name, argument in INTERVALS:
+        with refused(argument):
+            getattr(burridge_knopoff, name)(**{**CALLS[name], argument: ends})
 
 
 @pytest.mark.parametrize("kind", ["Chain", "Model", "InitialState", "Settings", "SearchSettings", "MotionSettings"])
