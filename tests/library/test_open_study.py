@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import xarray
 
-from burridge_knopoff import decode_flags, open_study, plot
+from burridge_knopoff import Model, decode_flags, open_study, plot, sweep
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.show.result import open_result
@@ -59,6 +59,20 @@ def test_the_tree_has_the_files_as_nodes(results):
     counts = {study[f"points/linearized/minus/a{a}"].sizes["event"] for a in ("0.0500", "0.2200")}
     assert len(counts) == 2
     assert study.config["transient"] == 20.0
+
+
+def test_a_sweep_has_the_bits_of_the_points_of_a_study(results):
+    points = open_study(results).points()
+    settings = {key: CONFIG[key] for key in ("transient", "window", "batches", "event_window")}
+    models = [Model(law) for law in points["law"].values.tolist()]
+    runs = sweep(models, points["initial"].values.tolist(), a=points["a"].values, motion=None, **settings)
+    there = points["status"] == 0
+    assert there.sum() == 11
+    common = {*runs.data_vars} & {*points.data_vars}
+    assert {"mean_distance", "lyapunov_exponent", "settling_time", "event_count"} <= common
+    for name in common - {"initial_position", "initial_velocity"}:
+        assert runs[name].dims == points[name].dims
+        np.testing.assert_array_equal(runs[name].where(there), points[name].where(there), err_msg=name)
 
 
 def test_a_study_is_shown_on_one_screen(results):

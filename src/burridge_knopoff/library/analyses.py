@@ -43,6 +43,7 @@ def _of_states(function: Callable[..., _T], *states: str) -> Callable[..., _T]:
         if settings is not None:
             values["settings"] = settings_of(type(settings), values["settings"], named)
         model = instance_of(values["model"], Model, "model")
+        model.law.check_complete()
         loading = {"loading": values["loading"]} if "loading" in values else {}
         for name in states:
             values[name] = begun_state(model, values[name], name, start=start, **loading)
