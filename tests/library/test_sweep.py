@@ -126,7 +126,6 @@ def test_a_run_that_does_not_complete_is_included():
         ({"a": [[0.1, 0.2], [0.3, 0.4]]}, "a: [[0.1, 0.2], [0.3, 0.4]]"),
         ({"v": np.array([[0.1]])}, "v: array([[0.1]])"),
         ({"a": [0.1, 2.0], "solver": "map"}, "a = 2.0: solver: 'map'"),
-        ({"cores": 0}, "cores: 0"),
         ({"colour": "blue"}, "colour"),
         ({"lyapunov_exponents": 7}, "lyapunov_exponents: 7"),
         ({"model": Model("linearized", blocks=4)}, "blocks: 4"),

@@ -10,12 +10,6 @@ from tests.refused import refused
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"window": 0.0}, "window: 0.0"),
-        ({"transient": -1.0}, "transient: -1.0"),
-        ({"batches": 1}, "batches: 1"),
-        ({"start": "soon"}, "start: 'soon'"),
-        ({"solver": "euler"}, "solver: 'euler'"),
-        ({"events": "some"}, "events: 'some'"),
         ({"colour": "blue"}, "colour"),
         ({"model": Model("linearized", a=2.0), "solver": "map"}, "solver: 'map'"),
         ({"initial": "middle"}, "initial: 'middle'"),
