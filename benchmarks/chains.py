@@ -61,7 +61,7 @@ def by_solver(rounds: int) -> None:
         def contestant(law: str, solver: str, blocks: int = blocks, window: float = window):
             initial = near_sliding(blocks, law_of(law, a=A))
             settings = {"transient": TRANSIENT, "window": window, "events": "all", "lyapunov_exponents": 0}
-            return lambda: simulate(Model(law, a=A, v=V), initial, solver=solver, **settings)
+            return lambda: simulate(Model(law, a=A, blocks=blocks, v=V), initial, solver=solver, **settings)
 
         runs = {name: contestant(*variant) for name, variant in VARIANTS.items()}
         results = {name: run() for name, run in runs.items()}

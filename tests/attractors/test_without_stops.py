@@ -285,11 +285,10 @@ def test_a_run_next_to_the_hopf_point_is_on_no_torus(chain, v):
     assert simulate(Model(law, chain=chain, v=v), initial=state).kind == MotionKind.UNDETERMINED
 
 
-BRANCH = {"parameter": "v", "b": 0.3, "blocks": 2, "coupling": 0.4, "pulling": 1, "damping": 0.05}
-
-
 def hopf_point():
-    return hopf_bifurcations(Model({"formula": "1 - a*u + b*u**3"}, a=0.5), (0.4, 1.0), parameter="a", **BRANCH)[-1]
+    law = {"formula": "1 - a*u + b*u**3", "a": 0.5, "b": 0.3}
+    model = Model(law, blocks=2, coupling=0.4, pulling=1, damping=0.05)
+    return hopf_bifurcations(model, (0.4, 1.0), parameter="v")[-1]
 
 
 @pytest.mark.slow

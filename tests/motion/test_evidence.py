@@ -27,7 +27,7 @@ LAWS = ("linearized", "nonlinear")
 @cache
 def grid_of_kinds(v, transient, window):
     grid = {"a": np.arange(0.01, 0.3, 0.02).round(2).tolist(), "initial": ["minus", "plus"], "v": v}
-    return sweep(LAWS, **grid, transient=transient, window=window).kind.values
+    return sweep([Model(law) for law in LAWS], **grid, transient=transient, window=window).kind.values
 
 
 @pytest.mark.slow
