@@ -129,7 +129,7 @@ def test_curves_begin_at_0(parameter, first):
     """The parameter is either of the two of the curve; along it no root is bracketed at 0."""
     start = MODEL.at(**{parameter: 0.0})
     critical = critical_a(bifurcations_of(synchronized_orbits(start)))
-    bifurcation = bifurcation_near(synchronized_orbit(start.at(critical - 1e-3)), critical)
+    bifurcation = bifurcation_near(synchronized_orbit(start.at(a=critical - 1e-3)), critical)
     if first:
         curve = follow_bifurcation(bifurcation, (parameter, "a"), (critical - 0.01, critical + 0.01))
         values, a = curve.values.T

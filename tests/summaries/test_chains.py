@@ -116,7 +116,7 @@ def test_two_blocks_are_described_by_their_asymptotic_motion(compared):
     for (c, chain), (j, state), (k, a) in product(enumerate(chains_of), enumerate(STATES), enumerate(GRID)):
         assert tuple(compared["initial_position"].values[j]) == state.position
         assert tuple(compared["initial_velocity"].values[j]) == state.velocity
-        both = [chain(model).at(a) for model in models(2, LAWS)]
+        both = [chain(model).at(a=a) for model in models(2, LAWS)]
         for i, model in enumerate(both):
             motion = {name: compared[name].values[c, i, j, k] for name in two_blocks.MOTION_VARIABLES}
             assert motion == asdict(asymptotic_states(model, STATES, SEARCH)[j])
