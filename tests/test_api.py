@@ -60,7 +60,7 @@ def forms_() -> None:
         simulate(Model("linearized", a=0.08), initial)
         sweep(Model("linearized"), initial, a=0.08)
     simulate(model, initial=run.final, transient=0, window=100)
-    simulate(Model({"formula": "1 - c*a*u", "c": 0.5}, a=0.1, coupling=1.5, **{"mass[3]": 1.2}))
+    simulate(Model({"formula": "1 - c*a*u", "c": 0.5}, a=0.1, coupling=1.5).at(**{"mass[3]": 1.2}))
     sweep(model, a=np.linspace(0.1, 0.2, 3), v=0.2)
     branch = follow(model, (0.07, 0.09), initial=run, parameter="a")
     follow(branch[0].orbit, [0.07, 0.09], parameter="a")

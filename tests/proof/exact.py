@@ -67,13 +67,13 @@ def exact_orbit(guess, a):
 
         def equations(*unknown):
             a_value = mpf(a) if a is not None else unknown[6]
-            margins, state, tangent = follow(unknown[:6], a_value, parameter="a")
+            margins, state, tangent = follow(unknown[:6], a_value)
             values = [*margins, state[0] - unknown[0], state[1] - unknown[1]]
             return values if a is not None else [*values, transverse(tangent) - 1]
 
         solution = list(mpmath.findroot(equations, [mpf(value) for value in guess], tol=mpf(10) ** (8 - 2 * DIGITS)))
         a_value = mpf(a) if a is not None else solution[6]
-        tangent = follow(solution[:6], a_value, parameter="a")[2]
+        tangent = follow(solution[:6], a_value)[2]
         # The derivative of x_1 − x_2 with respect to x_1 = x_3.
         symmetric = tangent[0, 0] + tangent[0, 2] - tangent[1, 0] - tangent[1, 2]
         return Exact(a_value, solution[:6], transverse(tangent), symmetric)

@@ -19,9 +19,9 @@ simulate(Model("nonlinear", a=5.0, blocks=256, coupling=100.0), (range(256), [0.
 """
 MANY = """
 import numpy as np
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Model
 from burridge_knopoff.running.ensemble import new_ensemble
-ensemble = new_ensemble(Model(Chain(256, coupling=100.0), law_of("nonlinear", 5.0), 0.1))
+ensemble = new_ensemble(Model("nonlinear", a=5.0, blocks=256, coupling=100.0))
 start = np.random.default_rng(1).uniform(0.0, 0.1, (2, 16, 256))
 print("begun", flush=True)
 ensemble.run(*start, np.zeros((16, 256), dtype=bool), [1e6])

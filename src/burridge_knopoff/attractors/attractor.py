@@ -90,7 +90,7 @@ class Attractor:
 
     Distances are the largest difference of a position or a velocity, in the units of `Model`.
 
-    >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
+    >>> from burridge_knopoff import Model, SearchSettings, find_attractors
     >>> model = Model("linearized", a=0.08)
     >>> settings = SearchSettings(samples=12, transient=500, window=500)
     >>> attractors, labels = find_attractors(model, settings)

@@ -114,7 +114,7 @@ def label_states(
     velocities below 0 under one-sided contact.
 
     >>> import numpy as np
-    >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, label_states, law_of
+    >>> from burridge_knopoff import Model, SearchSettings, find_attractors, label_states
     >>> model = Model("linearized", a=0.08)
     >>> settings = SearchSettings(samples=12, transient=500, window=500)
     >>> attractors, labels = find_attractors(model, settings)

@@ -53,7 +53,7 @@ def find_attractors(
 
     Times are in units of 1/ω. docs/search.md describes the search.
 
-    >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
+    >>> from burridge_knopoff import Model, SearchSettings, find_attractors
     >>> model = Model("linearized", a=0.08)
     >>> settings = SearchSettings(samples=12, transient=500, window=500)
     >>> attractors, labels = find_attractors(model, settings)

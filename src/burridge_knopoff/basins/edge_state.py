@@ -90,7 +90,7 @@ class EdgeState:
 
     Times are in units of 1/ω, states in those of `Model`.
 
-    >>> from burridge_knopoff import Chain, Model, edge_state, find_attractors, law_of
+    >>> from burridge_knopoff import Model, edge_state, find_attractors
     >>> model = Model("linearized", a=0.1)
     >>> attractors, labels = find_attractors(model, samples=24, transient=1000, window=1000)
     >>> first, second = (item.motion.state() for item in attractors if item.symmetry.name == "ASYMMETRIC")
@@ -162,7 +162,7 @@ def edge_state(
 
     Source: J. D. Skufca, J. A. Yorke and B. Eckhardt, Phys. Rev. Lett. 96 (2006) 174101.
 
-    >>> from burridge_knopoff import Chain, Model, edge_state, find_attractors, law_of
+    >>> from burridge_knopoff import Model, edge_state, find_attractors
     >>> model = Model("linearized", a=0.08)
     >>> attractors, labels = find_attractors(model, starts=["plus"], samples=12, transient=500, window=500)
     >>> between = edge_state(model, attractors[0].motion.state(), attractors[1].motion.state(), attractors)

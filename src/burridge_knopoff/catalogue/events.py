@@ -52,7 +52,7 @@ class SlipEvents:
     status : how the run ended
     final : the state at the end, from which another run continues, with the events that have not ended
 
-    >>> from burridge_knopoff import Chain, InitialState, Model, law_of, record_events
+    >>> from burridge_knopoff import InitialState, Model, record_events
     >>> model = Model("nonlinear", a=0.5, blocks=2, pulling=1, v=0.01)
     >>> start = model.begin(InitialState("own", (-0.9, -0.8), (0.0, 0.0)), "tested")
     >>> events = record_events(model, start, 40.0)

@@ -33,7 +33,7 @@ class EventExponents:
     events : number of events in the average
     status, end_time : how the run ended, and τ then
 
-    >>> from burridge_knopoff import Chain, InitialState, Model, event_exponents, law_of
+    >>> from burridge_knopoff import InitialState, Model, event_exponents
     >>> model = Model("carlson_langer", a=2.0, coupling=2, v=1.0)
     >>> start = model.begin(InitialState("rest", (-0.5, -0.95, -0.7), 0.0), "tested")
     >>> found = event_exponents(model, start, 100.0, count=3)
@@ -81,7 +81,7 @@ def event_exponents(
 
     Reference: G. Benettin, L. Galgani, A. Giorgilli and J.-M. Strelcyn, Meccanica 15 (1980) 9-30.
 
-    >>> from burridge_knopoff import Chain, InitialState, Model, event_exponents, law_of
+    >>> from burridge_knopoff import Chain, InitialState, Model, event_exponents
     >>> chain = Chain(2, coupling=3.5, pulling=1, threshold=(1.0, 2.25))
     >>> model = Model("carlson_langer", a=0.0, sigma=0.2, chain=chain, v=1.0)
     >>> start = model.begin(InitialState("rest", (-0.5, -0.95), 0.0), "tested")
@@ -159,7 +159,7 @@ def event_multipliers(model: Model, state: ChainState, end: float, *, loading: s
     Raises ValueError, one line, as `record_events` does, if a block slips at the start or at the end, if perturbations
     overflow, and where they have no linear growth, as `event_exponents` does.
 
-    >>> from burridge_knopoff import Chain, InitialState, Model, event_multipliers, law_of
+    >>> from burridge_knopoff import InitialState, Model, event_multipliers
     >>> model = Model("carlson_langer", a=0.0, sigma=0.2, blocks=1, pulling=1, v=1.0)
     >>> start = model.begin(InitialState("rest", (-0.8,), 0.0), "tested")
     >>> event_multipliers(model, start, 0.5).tolist()

@@ -31,7 +31,7 @@ class Catalogue(SlipEvents):
 
     begin_time, end_time : ends of the catalogue on the loading clock; loading, solver : of the run
 
-    >>> from burridge_knopoff import Chain, InitialState, Model, law_of, record_events
+    >>> from burridge_knopoff import InitialState, Model, record_events
     >>> model = Model("carlson_langer", a=3.0, blocks=20, coupling=9, pulling=1, v=0.01)
     >>> rough = {"random": "uniform", "low": -1.0, "high": -0.9, "seed": 1}
     >>> events = record_events(model, model.begin(InitialState("rough", rough, 0.0), "tested"), 500.0, begin=100.0)
@@ -152,7 +152,7 @@ def record_events(
     to no event until they have stopped. Raises ValueError, one line, for anything that the model or the solver does not
     allow.
 
-    >>> from burridge_knopoff import Chain, InitialState, Model, law_of, record_events
+    >>> from burridge_knopoff import InitialState, Model, record_events
     >>> model = Model("linearized", a=0.1, blocks=1, pulling=1, v=0.01)
     >>> start = model.begin(InitialState("own", (-0.9,), (0.0,)), "tested")
     >>> events = record_events(model, start, 100.0)

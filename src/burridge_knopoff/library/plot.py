@@ -57,7 +57,7 @@ def plot(result: Any, axes: Axes | None = None) -> Figure:
     has vector lines; `figure.savefig` writes it. matplotlib is imported by the first picture. Raises ValueError, one
     line, for anything else, and for axes where the picture has several panels.
 
-    >>> from burridge_knopoff import plot, sweep
+    >>> from burridge_knopoff import Model, plot, sweep
     >>> runs = sweep(Model("linearized"), "plus", a=[0.05, 0.1, 0.15], transient=1000, window=500)
     >>> (panel,) = plot(runs).axes
     >>> panel.get_xlabel(), len(panel.lines) > 0

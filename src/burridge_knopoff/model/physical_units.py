@@ -26,7 +26,7 @@ class PhysicalUnits:
 
     Raises ValueError, one line, for a number that is not above 0.
 
-    >>> from burridge_knopoff import PhysicalUnits, simulate
+    >>> from burridge_knopoff import Model, PhysicalUnits, simulate
     >>> units = PhysicalUnits(mass=0.5, stiffness=200.0, friction=2.0)
     >>> units.time, units.length, units.velocity, units.damping
     (0.05, 0.01, 0.2, 10.0)

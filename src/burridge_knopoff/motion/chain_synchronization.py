@@ -149,7 +149,7 @@ def transverse_exponent(
     alignment, window : times in units of 1/ω, as the exponent is in units of ω; by default 200 and 2500, multiplied by
         the time unit of the chain (`Chain.own_units`), and the window is at least 50 of these units
 
-    >>> from burridge_knopoff import Chain, InitialState, Model, law_of, transverse_exponent
+    >>> from burridge_knopoff import InitialState, Model, transverse_exponent
     >>> model = Model("linearized", a=0.08)
     >>> state = model.begin(InitialState("own", (-0.9, -1.1, -0.9), (0.1, 0.1, 0.1)))
     >>> exponent, error = transverse_exponent(model, state, alignment=500.0, window=2000.0)

@@ -74,7 +74,7 @@ def block_frequencies(model: Model, state: ChainState, duration: float = 4000.0)
     Sources: J. Laskar, Physica D 67 (1993) 257 (fundamental frequencies of quasiperiodic motion); S. Das, Y. Saiki, E.
     Sander and J. A. Yorke, Nonlinearity 30 (2017) 4111 (weighted averages, here of the times between slips).
 
-    >>> from burridge_knopoff import Chain, Model, block_frequencies, law_of, simulate
+    >>> from burridge_knopoff import Model, block_frequencies, simulate
     >>> model = Model("linearized", a=0.06).at(**{"mass[3]": 1.1})
     >>> run = simulate(model, initial="plus", transient=0, window=4000)
     >>> frequency, error = block_frequencies(model, run.final)

@@ -63,7 +63,7 @@ def limit_cycle(model: Model, state: ChainState, settling: float = 0.0, window: 
     motion approaches the orbit found there.
     Raises ValueError for a time or a state that is not allowed.
 
-    >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, simulate
+    >>> from burridge_knopoff import Model, limit_cycle, simulate
     >>> model = Model("linearized", a=0.08)
     >>> run = simulate(model, initial="plus", transient=0, window=10)
     >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)

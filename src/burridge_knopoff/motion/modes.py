@@ -46,7 +46,7 @@ class ModeAmplitudes:
         φ·M x' = −ω A sin θ. In a mode that oscillates freely A is constant, and θ grows at the rate ω
 
     >>> import numpy as np
-    >>> from burridge_knopoff import Chain, ChainState, Model, law_of, mode_amplitudes
+    >>> from burridge_knopoff import ChainState, Model, mode_amplitudes
     >>> model = Model("linearized", a=0.0)
     >>> antiphase = ChainState(np.array([0.05, 0.0, -0.05]), np.full(3, 0.1), np.zeros(3, bool))
     >>> modes = mode_amplitudes(model, antiphase, 100.0)
@@ -103,7 +103,7 @@ def mode_amplitudes(model: Model, state: ChainState, duration: float = 4000.0) -
     The modes are those of the springs and masses alone: K φ = ω² M φ. Those with equal frequencies, as in a ring, are
     any that are orthogonal. Raises ValueError, one line, for a duration or a state that is not allowed.
 
-    >>> from burridge_knopoff import Chain, Model, block_frequencies, law_of, mode_amplitudes, simulate
+    >>> from burridge_knopoff import Model, block_frequencies, mode_amplitudes, simulate
     >>> model = Model("linearized", a=0.03).at(**{"mass[3]": 1.3})
     >>> run = simulate(model, initial="plus", transient=0, window=6000)
     >>> modes = mode_amplitudes(model, run.final)

@@ -45,7 +45,7 @@ class SteadyMotion:
     left_for : a state of the later motion if this motion proved to be a transient, otherwise None
     return_rate : number of returns per unit of time
 
-    >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
+    >>> from burridge_knopoff import Model, SearchSettings, find_attractors
     >>> model = Model("linearized", a=0.08)
     >>> settings = SearchSettings(samples=12, transient=500, window=500)
     >>> attractors, labels = find_attractors(model, settings)

@@ -45,7 +45,7 @@ def synchronized_orbit(model: Model) -> PeriodicOrbit:
     `multipliers`, synchronized motion of another period may attract: `transverse_exponent` says whether that from a
     state does. docs/synchronization.md derives where the orbit of three blocks is stable.
 
-    >>> from burridge_knopoff import Chain, Model, law_of, multipliers, synchronized_orbit
+    >>> from burridge_knopoff import Model, multipliers, synchronized_orbit
     >>> model = Model("linearized", a=0.08)
     >>> orbit = synchronized_orbit(model)
     >>> round(orbit.period, 6), orbit.stop_counts

@@ -45,7 +45,7 @@ class BifurcationCurve:
     values, errors : of both parameters, in order along the curve, shape (n, 2)
     orbits : the orbit at each point
 
-    >>> from burridge_knopoff import Chain, Model, follow, follow_bifurcation, law_of, locate_bifurcations
+    >>> from burridge_knopoff import Model, follow, follow_bifurcation, locate_bifurcations
     >>> from burridge_knopoff import synchronized_orbit
     >>> branch = follow(synchronized_orbit(Model("linearized", a=0.0865)), (0.086, 0.0875), parameter="a")
     >>> (pitchfork,) = locate_bifurcations(branch)
@@ -87,7 +87,7 @@ def follow_bifurcation(
 
     Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Section 10.3.
 
-    >>> from burridge_knopoff import Chain, Model, follow, follow_bifurcation, law_of, locate_bifurcations
+    >>> from burridge_knopoff import Model, follow, follow_bifurcation, locate_bifurcations
     >>> from burridge_knopoff import synchronized_orbit
     >>> branch = follow(synchronized_orbit(Model("linearized", a=0.0865)), (0.086, 0.0875), parameter="a")
     >>> (pitchfork,) = locate_bifurcations(branch)

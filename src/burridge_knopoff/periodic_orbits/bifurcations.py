@@ -60,7 +60,7 @@ class Bifurcation:
         is None if the branch ends or joins a branch of simpler orbits
     is_turning_point : whether the branch turns back in the parameter there
 
-    >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, locate_bifurcations, synchronized_orbit
+    >>> from burridge_knopoff import Model, follow, limit_cycle, locate_bifurcations, synchronized_orbit
     >>> model = Model("linearized", a=0.0865)
     >>> orbit = limit_cycle(model, synchronized_orbit(model).reference)
     >>> branch = follow(orbit, (0.086, 0.0875), parameter="a")
@@ -130,7 +130,7 @@ def locate_bifurcations(branch: Sequence[BranchOrbit]) -> Iterator[Bifurcation]:
     Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.3 and 10.2;
     docs/bifurcations.md explains how the kinds are distinguished.
 
-    >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, locate_bifurcations, synchronized_orbit
+    >>> from burridge_knopoff import Model, follow, limit_cycle, locate_bifurcations, synchronized_orbit
     >>> model = Model("linearized", a=0.0865)
     >>> orbit = limit_cycle(model, synchronized_orbit(model).reference)
     >>> branch = follow(orbit, (0.086, 0.0875), parameter="a")

@@ -39,7 +39,7 @@ class Branch(Sequence[BranchOrbit]):
         lost : no next orbit is found, however short the step; the message says what failed
         start : that side was not followed
 
-    >>> from burridge_knopoff import Chain, Model, follow, law_of, synchronized_orbit
+    >>> from burridge_knopoff import Model, follow, synchronized_orbit
     >>> branch = follow(synchronized_orbit(Model("linearized", a=0.0865)), (0.086, 0.0875), parameter="a")
     >>> branch.ends[1].reason, len(branch.bifurcations), branch[0].value < branch[-1].value
     ('bound', 1, True)

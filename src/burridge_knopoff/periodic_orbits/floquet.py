@@ -34,7 +34,7 @@ class Multipliers:
     symmetry_breaking : of the symmetry-breaking perturbations; empty unless mirror blocks move synchronously
     power : number of returns in a period
 
-    >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, multipliers, simulate
+    >>> from burridge_knopoff import Model, limit_cycle, multipliers, simulate
     >>> model = Model("linearized", a=0.08)
     >>> run = simulate(model, initial="plus", transient=0, window=10)
     >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)
@@ -90,7 +90,7 @@ def multipliers(orbit: PeriodicOrbit) -> Multipliers:
 
     Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.4, 7.4 and 10.2.
 
-    >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, multipliers, simulate
+    >>> from burridge_knopoff import Model, limit_cycle, multipliers, simulate
     >>> model = Model("linearized", a=0.08)
     >>> run = simulate(model, initial="plus", transient=0, window=10)
     >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)

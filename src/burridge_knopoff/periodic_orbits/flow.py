@@ -17,7 +17,7 @@ from burridge_knopoff.running.runner import Runner, new_observer
 class OrbitError(ValueError):
     """A periodic orbit does not exist or was not found; the message gives the reason.
 
-    >>> from burridge_knopoff import Chain, Model, OrbitError, law_of, synchronized_orbit
+    >>> from burridge_knopoff import Model, OrbitError, synchronized_orbit
     >>> try:
     ...     synchronized_orbit(Model("linearized", a=0.08, threshold=(1, 1, 2)))
     ... except OrbitError as error:

@@ -63,7 +63,7 @@ class PeriodicOrbit:
 
     Times are in units of 1/ω, states in those of `Model`.
 
-    >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, simulate
+    >>> from burridge_knopoff import Model, limit_cycle, simulate
     >>> model = Model("linearized", a=0.08)
     >>> run = simulate(model, initial="plus", transient=0, window=10)
     >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)
@@ -295,7 +295,7 @@ def find_periodic_orbit(model: Model, guess: ChainState, return_time: float, sym
 
     Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493.
 
-    >>> from burridge_knopoff import Chain, Model, limit_cycle, find_periodic_orbit, law_of, simulate
+    >>> from burridge_knopoff import Model, find_periodic_orbit, limit_cycle, simulate
     >>> model = Model("linearized", a=0.08)
     >>> run = simulate(model, initial="plus", transient=0, window=10)
     >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)

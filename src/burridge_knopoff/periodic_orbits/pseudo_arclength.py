@@ -62,7 +62,7 @@ class BranchOrbit:
         or of half the period, or uniform sliding; the branch ends before it
     distance_to_grazing : length from here to the corner of the branch where the orbit grazes; NaN unless it is next
 
-    >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, synchronized_orbit
+    >>> from burridge_knopoff import Model, follow, limit_cycle, synchronized_orbit
     >>> model = Model("linearized", a=0.0865)
     >>> orbit = limit_cycle(model, synchronized_orbit(model).reference)
     >>> branch = follow(orbit, (0.086, 0.0875), parameter="a")

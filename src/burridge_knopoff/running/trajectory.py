@@ -37,7 +37,7 @@ class Trajectory:
     unless `status` is completed. Lyapunov exponents are also NaN where perturbations have no linear growth;
     `missing_derivative` then says why, and is empty otherwise.
 
-    >>> from burridge_knopoff import simulate
+    >>> from burridge_knopoff import Model, simulate
     >>> run = simulate(Model("linearized", a=0.08), "plus", transient=0, window=20, events="all")
     >>> run.status, run.event_count, run.event_position.shape
     ('completed', 10, (10, 3))
