@@ -20,11 +20,11 @@ class OwnUnits:
     """Units of time, length and force. They are powers of 2, so that rescaled chains give the same results to the bit.
 
     >>> from burridge_knopoff import Chain
-    >>> slow = Chain(3, coupling=2.0**-20, pulling=tuple(2.0**-20 * n for n in (1, 2, 1)))
+    >>> slow = Chain(3, coupling=2.0**-18, pulling=tuple(2.0**-18 * n for n in (1, 2, 1)))
     >>> Chain(3).own_units
     OwnUnits(time=1.0, length=1.0, force=1.0)
     >>> slow.own_units
-    OwnUnits(time=1024.0, length=1048576.0, force=1.0)
+    OwnUnits(time=512.0, length=262144.0, force=1.0)
     """
 
     time: float = 1.0
