@@ -32,14 +32,14 @@ print(json.dumps([burridge_knopoff.__file__, missing]))
 """
 
 WORK = """
-from burridge_knopoff import basin_map, simulate, sweep
+from burridge_knopoff import Model, basin_map, simulate, sweep
 from burridge_knopoff.figures import basins as basin_figure
 from burridge_knopoff.figures.style import write_figure
 
-run = simulate("stribeck", 0.1, "plus", transient=20, window=50)
+run = simulate(Model("stribeck", a=0.1), "plus", transient=20, window=50)
 run.to_dataset().to_netcdf("run.nc")
-assert sweep("nonlinear", [0.1, 0.2], transient=20, window=50).sizes["a"] == 2
-maps = basin_map("linearized", 0.08, pixels=2, samples=4, transient=500, window=500)
+assert sweep(Model("nonlinear"), a=[0.1, 0.2], transient=20, window=50).sizes["a"] == 2
+maps = basin_map(Model("linearized", a=0.08), pixels=2, samples=4, transient=500, window=500)
 write_figure(basin_figure.draw(maps[0], {"plus": (0.989, -0.991)}), "basins.png")
 """
 

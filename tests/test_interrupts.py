@@ -39,7 +39,7 @@ def function(name, call, module=""):
     return FUNCTION.format(module=module, name=name, call=call)
 
 
-SWEEP = function("sweep", "sweep('linearized', [0.1, 0.16, 0.2], window=1e7, cores=2)")
+SWEEP = function("sweep", "sweep(model, a=[0.1, 0.16, 0.2], window=1e7, cores=2)")
 RUNS = "with parallel_map(2) as each: each('runs', slow, [0.1, 0.16, 0.2])"
 PROCESSES = function("parallel_map", RUNS, ".running.processes")
 # Each would run for minutes.

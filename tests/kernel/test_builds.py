@@ -19,18 +19,18 @@ from burridge_knopoff.provenance import processor
 
 if sys.argv[1:]:
     processor.instructions = lambda: frozenset(sys.argv[1:])
-from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, Settings, law_of, simulate
+from burridge_knopoff import FormulaLaw, InitialState, Model, Settings, law_of, simulate
 from burridge_knopoff.kernel import _core
 from burridge_knopoff.running.ensemble import new_ensemble
 
 print(_core.__file__)
-laws = law_of("linearized", 0.2), law_of("nonlinear", 0.3), FormulaLaw(0.3, "0.98*exp(-a*u) + 0.01*(1 + u)**1.5")
+laws = law_of("linearized", a=0.2), law_of("nonlinear", a=0.3), FormulaLaw("0.98*exp(-a*u) + 0.01*(1 + u)**1.5", a=0.3)
 for blocks, ends in ((3, "open"), (9, "open"), (5, "ring"), (26, "open")):
     position = -0.9 + 0.08 * np.sin(1.0 + 2.0 * np.arange(blocks))
     state = InitialState("wave", tuple(position), (0.1,) * blocks)
     for law in laws:
         for solver in ("series", "map") if law.is_linear and ends == "open" else ("series",):
-            model = Model(Chain(blocks, ends=ends), law)
+            model = Model(law, blocks=blocks, ends=ends)
             settings = Settings(solver=solver, transient=20.0, window=100.0, events="all")
             run = simulate(model, initial=state, settings=settings)
             kept = run.event_time, run.event_velocity, run.distance, run.crossing_velocity, run.batch_lyapunov_exponent

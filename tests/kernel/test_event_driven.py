@@ -108,8 +108,9 @@ def test_random_chains_against_scipy(chain):
     assume(len(expected) < 2 or np.diff([time for time, _, _ in expected]).min() > 1e-7)
     state = InitialState("drawn", tuple(position), tuple(velocity))
     for solver in SOLVERS[law]:
-        settings = {"transient": 0.0, "window": end, "events": "all", "trajectory": 0.0, **options}
-        run = simulate(Model(law, a=a), state, solver=solver, **settings)
+        settings = {"transient": 0.0, "window": end, "events": "all", "trajectory": 0.0, "start": options["start"]}
+        model = Model(law, a=a, blocks=blocks, v=v, contact=options["contact"])
+        run = simulate(model, state, solver=solver, **settings)
         assert run.status == "completed"
         assume(not (np.diff(run.event_time) < 2e-3).any())
         check_events(listed(run), expected, 1e-6)
