@@ -17,8 +17,9 @@ from burridge_knopoff import Chain, ChainState, Model, law_of
 from burridge_knopoff.kernel._core import Catalogue, Clouds, Exponents
 from burridge_knopoff.model.model import CONTACTS
 from burridge_knopoff.running.ensemble import new_ensemble
-from burridge_knopoff.running.runner import FIXED_STEP_SOLVERS, Runner, new_observer, run_together
+from burridge_knopoff.running.runner import Runner, new_observer, run_together
 from burridge_knopoff.running.section import SUM, Section
+from burridge_knopoff.running.solvers import SOLVERS
 from burridge_knopoff.values import MOST_NUMBERS
 
 LAWS = ("linearized", "nonlinear", "carlson_langer", "exponential", "stribeck")
@@ -49,14 +50,14 @@ def random_state(model: Model, random: np.random.Generator) -> ChainState:
 
 def resume(model: Model, state: ChainState, random: np.random.Generator, loading: str) -> tuple[str, ChainState]:
     """Run from a state in a random way; return the way and the state at the end, or the same one if the run failed."""
-    solver = str(random.choice(["series", "series", "series", "map", *FIXED_STEP_SOLVERS]))
+    solver = str(random.choice(["series", "series", *SOLVERS]))
     blocks, begin = model.blocks, state.time
     end = begin + random.choice([0.0, 0.7, 5.0, 25.0])
     edges = np.linspace(begin + (end - begin) * random.choice([0.0, 0.3]), end, 4)
     times = np.sort(random.uniform(begin, end, 7))
     section = Section("block", int(random.integers(1, blocks + 1))) if random.random() < 0.5 else SUM
     vectors = int(random.choice([0, 0, 1, 2 * blocks]))
-    is_observed = solver in FIXED_STEP_SOLVERS or (loading == "steady" and random.random() < 0.5)
+    is_observed = SOLVERS[solver].has_fixed_step or (loading == "steady" and random.random() < 0.5)
     runner = Runner(
         model,
         solver,
@@ -71,7 +72,7 @@ def resume(model: Model, state: ChainState, random: np.random.Generator, loading
         loading=loading,
     )
     runner.begin(state)
-    status = runner.run() if solver in FIXED_STEP_SOLVERS else runner.run(end, int(random.integers(-1, blocks)))
+    status = runner.run() if SOLVERS[solver].has_fixed_step else runner.run(end, int(random.integers(-1, blocks)))
     runner.log.events.values()
     runner.observer.results()
     runner.exponents.results()
