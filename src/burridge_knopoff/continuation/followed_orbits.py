@@ -87,6 +87,8 @@ def follow_orbits(
     processes, folder : number of processes, and the cache of their results; see `parallel_map`. The results do not
         depend on them
     """
+    if "a" not in model.law.names:
+        return FollowedOrbits()
     largest = float(np.nanmax(table["a"].values))
     places = _places(table, changes)
     models = [at_recorded_a(model, float(table["a"].values[k])) for k, _ in places]
