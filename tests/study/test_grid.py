@@ -81,6 +81,17 @@ def test_a_number_of_a_law_is_a_parameter():
     assert [study.run_of(**point)[0].law.parameters["sigma"] for point in all_points(study)] == [0.01, 0.05]
 
 
+BOTH = {"linearized": {}, "drop": {"law": "carlson_langer"}}
+
+
+def test_a_number_with_one_value_is_of_the_laws_that_have_it():
+    study = load(laws=BOTH, grid={"a": [2], "sigma": [0.02], "v": [0.1, 0.2]}, figures={"law": "drop"})
+    models = [study.run_of(**point)[0] for point in all_points(study)]
+    numbers = {law: {(*model.law.parameters.items(),) for model in models if model.law.name == law} for law in BOTH}
+    assert numbers == {"linearized": {(("a", 2.0),)}, "drop": {(("a", 2.0), ("sigma", 0.02))}}
+    assert all("sigma0.0200" in study.run_file(**point) for point in all_points(study))
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
@@ -89,6 +100,8 @@ def test_a_number_of_a_law_is_a_parameter():
         ({"grid": {"v": [0.1, 0.2]}}, ["grid.a: "]),
         ({"grid": {"a": [0.1], "speed": [1]}}, ["speed: ", "coupling"]),
         ({"grid": {"a": [0.1], "sigma": [0.1, 0.2]}}, ["sigma: ", "linearized"]),
+        ({"grid": {"a": [0.1], "sigma": [0.1]}}, ["sigma: ", "linearized"]),
+        ({"laws": BOTH, "grid": {"a": [0.1], "sigma": [0.1, 0.2]}}, ["sigma: ", "linearized"]),
         ({"grid": {"a": [0.1], "v": [0.1, 0.100001]}}, ["grid.v: ", "0.1 and 0.100001", "v0.1000.nc", "a_digits"]),
         ({"grid": {"a": [0.1], "v": []}}, ["grid.v: ", "[]"]),
         ({"grid": {"a": [0.1], "v": [0.1, 0]}}, ["v: 0.0"]),

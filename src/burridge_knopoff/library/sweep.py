@@ -196,7 +196,7 @@ def parameter_grid(
     Raises ValueError, one line, for a wrong argument, and for a value that occurs twice.
     """
     for name in parameters:
-        if name not in model.parameter_names and parse_indexed_name(name) is None:
+        if not model.has_parameter(name):
             allowed = [format_parameter_names(model.parameter_names), *sorted(settings)]
             hint = suggestion(name, [*model.parameter_names, *settings])
             raise ValueError(

@@ -153,6 +153,10 @@ class Model(Unchanging):
         """Names of the parameters of the law, the driver and the whole chain."""
         return (*self.law.names, "v", *CHAIN_PARAMETERS)
 
+    def has_parameter(self, name: str) -> bool:
+        """Whether the law, the driver or the chain has a parameter of this name."""
+        return name in self.parameter_names or parse_indexed_name(name) is not None
+
     @property
     def place(self) -> str:
         """The model in messages: a, or v under a law without a."""
@@ -189,7 +193,7 @@ class Model(Unchanging):
 
     def _stored_parameter(self, name: str) -> Any:
         """Return a parameter as the model stores it: a number, several numbers or a word."""
-        if not parse_indexed_name(name) and name not in self.parameter_names:
+        if not self.has_parameter(name):
             raise _unknown_parameter(name, self.parameter_names)
         if parameter_key(name) in CHAIN_PARAMETERS:
             return chain_parameter(self.chain, name)

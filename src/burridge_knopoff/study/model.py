@@ -35,4 +35,6 @@ def model_of(
     """
     chain = Chain(**{**config["chain"], **({} if blocks is None else {"blocks": blocks})})
     model = Model({law: config["laws"][law]}, chain=chain, v=config["v"], contact=config["contact"])
-    return at_recorded_a(model, a).at(**(others or {}))
+    # A parameter with one value is of the laws that have it; the config was checked when it was read.
+    own = {name: value for name, value in (others or {}).items() if model.has_parameter(name)}
+    return at_recorded_a(model, a).at(**own)

@@ -126,6 +126,10 @@ def check_models(
     grid, others : values of a, and the combinations of the other parameters, all of which are simulated at each a
     """
     chain, laws = Chain(**config["chain"]), config["laws"]
+    with error_prefix("laws."):
+        numbers = {number for name in laws for number in law_of({name: laws[name]}).names}
+    # With one value they are of the laws that have them.
+    single = {name for name in numbers & others[0].keys() if len({values[name] for values in others}) == 1}
     for name, solver in config["solver"].items():
         tapes = []
         for a in grid:
@@ -138,7 +142,8 @@ def check_models(
             base = Model(law, chain=chain, v=config["v"], contact=config["contact"])
             for values in others:
                 with error_prefix(f"grid ({name} law, a = {a:g}): " if values else ""):
-                    model = base.at(**values) if values else base
+                    own = {key: values[key] for key in values if key not in single or base.has_parameter(key)}
+                    model = base.at(**own)
                 if SOLVERS[solver].closed_form and not model.has_closed_form:
                     solver_names = " | ".join(name for name in RUN_SOLVERS if not SOLVERS[name].closed_form)
                     raise refusal(
