@@ -1,6 +1,5 @@
 # The public names and the modules that define them.
 from .attractors.attractor import Attractor as Attractor
-from .attractors.labels import label_states as label_states
 from .attractors.settings import SearchSettings as SearchSettings
 from .basins.edge_state import EdgeState as EdgeState
 from .basins.settings import EdgeSettings as EdgeSettings
@@ -17,9 +16,12 @@ from .library.analyses import edge_state as edge_state
 from .library.analyses import event_exponents as event_exponents
 from .library.analyses import event_multipliers as event_multipliers
 from .library.analyses import find_periodic_orbit as find_periodic_orbit
+from .library.analyses import hopf_bifurcations as hopf_bifurcations
+from .library.analyses import label_states as label_states
 from .library.analyses import limit_cycle as limit_cycle
 from .library.analyses import mode_amplitudes as mode_amplitudes
 from .library.analyses import record_events as record_events
+from .library.analyses import synchronized_orbit as synchronized_orbit
 from .library.analyses import transverse_exponent as transverse_exponent
 from .library.basin_map import basin_map as basin_map
 from .library.catalogue import Catalogue as Catalogue
@@ -40,7 +42,6 @@ from .motion.kind import MotionKind as MotionKind
 from .motion.modes import ModeAmplitudes as ModeAmplitudes
 from .motion.observables import SteadyMotion as SteadyMotion
 from .motion.settings import MotionSettings as MotionSettings
-from .motion.synchronized_orbit import synchronized_orbit as synchronized_orbit
 from .periodic_orbits.bifurcation_curve import BifurcationCurve as BifurcationCurve
 from .periodic_orbits.bifurcation_curve import follow_bifurcation as follow_bifurcation
 from .periodic_orbits.bifurcation_kind import BifurcationKind as BifurcationKind
@@ -52,7 +53,6 @@ from .periodic_orbits.floquet import multipliers as multipliers
 from .periodic_orbits.flow import OrbitError as OrbitError
 from .periodic_orbits.following import ContinuationSettings as ContinuationSettings
 from .periodic_orbits.hopf import HopfBifurcation as HopfBifurcation
-from .periodic_orbits.hopf import hopf_bifurcations as hopf_bifurcations
 from .periodic_orbits.periodic import PeriodicOrbit as PeriodicOrbit
 from .periodic_orbits.pseudo_arclength import BranchOrbit as BranchOrbit
 from .periodic_orbits.symmetry import Symmetry as Symmetry

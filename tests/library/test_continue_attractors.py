@@ -229,7 +229,7 @@ def test_the_share_that_is_done_is_shown(capsys, monkeypatch):
 @pytest.mark.parametrize(
     ("options", "place"),
     [
-        ({"a": 0.08}, "a"),
+        ({"a": 0.08}, "parameters"),
         ({"a": [0.08, 0.09], "v": [0.1, 0.2]}, "a"),
         ({"a": [0.08, 0.08]}, "a"),
         ({"a": [0.08, 0.09], "refine": -1.0}, "refine"),

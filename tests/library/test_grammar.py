@@ -21,12 +21,15 @@ from burridge_knopoff import (
     continue_attractors,
     edge_state,
     find_attractors,
+    follow,
+    hopf_bifurcations,
     label_states,
     law_of,
     limit_cycle,
     record_events,
     simulate,
     sweep,
+    synchronized_orbit,
 )
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import ChainState
@@ -201,7 +204,25 @@ def test_the_name_of_a_part_of_the_model_or_of_a_setting_is_no_parameter_of_a_la
         (lambda: Model(Chain(3), MODEL.law), ("Model", 'Model("linearized", a=0.08')),
         (lambda: Model("linearized", 0.1), ("Model", 'Model("linearized", a=0.08')),
         (lambda: Model("linearized", a=0.1, blocks=0), ("chain.blocks: 0",)),
-        (lambda: MODEL.at(0.1), ("at: 0.1", "a=0.08")),
+        (lambda: MODEL.at(0.1), ("parameters: 0.1", "a=0.08")),
+        (lambda: law_of("linearized", 0.1), ("parameters: 0.1", "a=0.08")),
+        (lambda: FormulaLaw(0.1, "1 - a*u"), ("parameters: '1 - a*u'", "a=0.08")),
+        (lambda: FormulaLaw("1 - a*u", 0.1), ("parameters: 0.1", "a=0.08")),
+        (lambda: MODEL.law.at(0.1), ("parameters: 0.1", "a=0.08")),
+        (lambda: MODEL.at(contact="symmetric"), ("contact", "Model(…, contact=…)")),
+        (lambda: Model("linearized", a=0.1, block=5), ("block", "did you mean blocks")),
+        (lambda: Model("linearized", a=0.1, **{"mass[0]": 2.0}), ("mass[0]", "1 to 3")),
+        (lambda: Model("linearized", a=0.1, **{"coupling[3]": 2.0}), ("coupling[3]", "1 to 2")),
+        (lambda: follow("linearized", 0.08, (0.07, 0.09), initial="plus"), ("orbit: 'linearized'", "Model")),
+        (lambda: follow(MODEL, (0.07, 0.09), initial="plus"), ("parameter: missing",)),
+        (lambda: hopf_bifurcations("linearized", 0.1, (0, 1)), ("model: 'linearized'", "Model")),
+        (lambda: synchronized_orbit("linearized", 0.08), ("model: 'linearized'", "Model")),
+        (lambda: label_states("linearized", 0.08, [], [], []), ("model: 'linearized'", "Model")),
+        (lambda: simulate(MODEL, "plus", v=0.2), ("v", "Model(…, v=…)")),
+        (lambda: limit_cycle(MODEL, "plus", coupling=1.2), ("coupling", "Model(…, coupling=…)")),
+        (lambda: limit_cycle(MODEL, "plus", settlin=1.2), ("settlin", "did you mean settling")),
+        (lambda: continue_attractors(MODEL, a=0.1), ("parameters: 0", "a=[0.08, 0.09]")),
+        (lambda: sweep(Model({"formula": "1 - cores*u"}, cores=0.1)), ("cores", "another name")),
         (lambda: simulate("linearized", 0.08, "plus"), ("model: 'linearized'", 'Model("linearized", a=0.08)')),
         (lambda: sweep("linearized", [0.1, 0.2]), ("model: 'linearized'", 'Model("linearized", a=0.08)')),
         (lambda: simulate(MODEL, "plus", windw=5.0), ("windw", "did you mean window")),
@@ -253,6 +274,15 @@ def test_a_parameter_with_one_value_goes_to_the_laws_that_have_it():
     for model, numbers in zip(models, ({}, {"a": 0.1, "sigma": 0.02}, {"a": 0.1}), strict=True):
         run = simulate(model.at(**numbers), **SHORT)
         assert runs.mean_distance.sel(law=model.law.name).item() == run.mean_distance
+
+
+def test_parameters_in_which_laws_differ_are_coordinates_over_the_law():
+    models = [Model("stribeck", a=0.1, sigma=0.3), Model("linearized", a=0.2), Model({"own": {"formula": "1/(1 + u)"}})]
+    runs = sweep(models, v=[0.1, 0.2], **SHORT)
+    np.testing.assert_array_equal(runs["a"].sel(law=["stribeck", "linearized", "own"]), [0.1, 0.2, np.nan])
+    np.testing.assert_array_equal(runs["sigma"], [0.3, np.nan, np.nan])
+    assert sweep(models[1:2], **SHORT)["a"].shape == ()
+    assert sweep([model.at(a=0.1) for model in models[:2]], **SHORT)["a"].item() == 0.1
 
 
 def test_named_states_as_in_a_config():

@@ -232,7 +232,9 @@ def simulated_law(options: argparse.Namespace) -> Law:
         check_law_numbers(numbers)
     if options.formula is None and options.law not in LAWS:
         raise unknown_law("law", options.law, '--formula "{}"')
-    if options.a is None and (options.formula is None or "a" in formula_names(options.formula)):
+    if options.a is not None and "a" in numbers:
+        raise ValueError(f"--number: got a={numbers['a']!r} beside --a, expected one of them")
+    if options.a is None and "a" not in numbers and (options.formula is None or "a" in formula_names(options.formula)):
         raise ValueError("--a: missing, expected a number of at least 0")
     kind = {"law": options.law} if options.formula is None else {"formula": options.formula}
     name = options.law_name or (options.law if options.formula is None else "formula")

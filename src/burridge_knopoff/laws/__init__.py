@@ -8,7 +8,7 @@ from typing import Any
 
 from burridge_knopoff.laws.carlson_langer import CarlsonLanger
 from burridge_knopoff.laws.exponential import Exponential
-from burridge_knopoff.laws.law import FormulaLaw, Law
+from burridge_knopoff.laws.law import FormulaLaw, Law, check_names
 from burridge_knopoff.laws.linearized import Linearized
 from burridge_knopoff.laws.nonlinear import Nonlinear
 from burridge_knopoff.laws.stribeck import Stribeck
@@ -30,11 +30,12 @@ LAWS: Mapping[str, type[Law]] = {
 GivenLaw = Law | str | Mapping[str, Any]
 
 
-def law_of(law: GivenLaw, **parameters: Any) -> Law:
+def law_of(law: GivenLaw, *others: Any, **parameters: Any) -> Law:
     """Return a friction law, with these values of its parameters.
 
     law : a `Law`; the name of a built-in law; or a description as in a config: {"formula": …} or {"law": NAME} with
         values of parameters, or with a name of its own, {NAME: {"formula": …}}
+    parameters : by their names; others, without a name, are refused
 
     Raises ValueError, one line, if there is no such law, or if the law does not accept these parameters.
 
@@ -49,6 +50,7 @@ def law_of(law: GivenLaw, **parameters: Any) -> Law:
     >>> law_of({"formula": "1/(1 + u/10)"})
     <law formula: 1/(1 + u/10)>
     """
+    check_names(others)
     if isinstance(law, Law):
         return law.at(**parameters) if parameters else law
     description: Mapping[str, Any] = {"law": law} if isinstance(law, str) else law

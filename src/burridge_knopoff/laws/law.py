@@ -7,10 +7,10 @@ the least friction. A new law is a class with a formula, or a formula in a confi
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from types import MappingProxyType
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -64,7 +64,8 @@ class Law(Unchanging):
     #: Maximum length of the formula in characters.
     max_length: ClassVar[int] = MOST_CHARACTERS
 
-    def __init__(self, /, *, name: str = "", **parameters: float) -> None:
+    def __init__(self, /, *others: Any, name: str = "", **parameters: float) -> None:
+        check_names(others)
         self.name = name or type(self).__module__.rpartition(".")[2]
         self._set({**self.defaults, **parameters})
 
@@ -147,8 +148,9 @@ class Law(Unchanging):
     def _key(self) -> tuple[object, ...]:
         return self.name, self.formula, tuple(self.parameters.items())
 
-    def at(self, **parameters: float) -> Self:
+    def at(self, *others: Any, **parameters: float) -> Self:
         """Return the same law with other values of some of its parameters."""
+        check_names(others)
         other = object.__new__(type(self))
         other.name, other.formula = self.name, self.formula
         other._set({**self.parameters, **parameters})
@@ -223,7 +225,8 @@ class FormulaLaw(Law):
     (<law power: 1/(1 + a*u)**p, a=0.04, p=2.0>, 0.6944)
     """
 
-    def __init__(self, formula: str, /, *, name: str = "formula", **parameters: float) -> None:
+    def __init__(self, formula: str, /, *others: Any, name: str = "formula", **parameters: float) -> None:
+        check_names(others)
         self.name = name
         self.formula = instance_of(formula, str, "formula")
         self._set(parameters)
@@ -238,6 +241,12 @@ class FormulaLaw(Law):
     def words(self) -> str:
         """The same as `text`, which already gives the parameters."""
         return self.text
+
+
+def check_names(others: Sequence[Any]) -> None:
+    """Refuse parameters without a name; raises ValueError, one line."""
+    if others:
+        raise ValueError(f"parameters: got {format_value(others[0])} without a name, expected a name, such as a=0.08")
 
 
 def _of_shape(value: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:

@@ -27,6 +27,19 @@ if TYPE_CHECKING:
     import xarray
 
 
+_ARGUMENTS = {
+    *fields_of(SearchSettings),
+    "model",
+    "settings",
+    "motion",
+    "refine",
+    "starts",
+    "start",
+    "cores",
+    "progress",
+}
+
+
 @show_settings(SearchSettings)
 def continue_attractors(
     model: Model,
@@ -80,10 +93,10 @@ def continue_attractors(
     # Imported here so that xarray is loaded only for a Dataset.
     from burridge_knopoff.summaries.attractors_along import reserved_names, summarize
 
-    base, axes, kept = parameter_grid(model, parameters, fields_of(SearchSettings), reserved_names())
+    base, axes, kept = parameter_grid(model, parameters, _ARGUMENTS, reserved_names())
     if len(axes) != 1:
-        name = base.parameter_names[0]
-        raise ValueError(f"{name}: got {len(axes)} parameters with several values, expected one, {name} or another")
+        names = ", ".join(axes) or "parameters"
+        raise ValueError(f"{names}: got {len(axes)} with several values, expected one, such as a=[0.08, 0.09]")
     for name in kept:
         raise ValueError(f"{name}: got a number beside several for all, expected {parameter_key(name)} alone")
     states = [initial_numbers(base, state, f"starts[{number}]") for number, state in enumerate(given)]

@@ -16,6 +16,7 @@ from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.following import ContinuationSettings, interval_ends
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
+from burridge_knopoff.values import instance_of
 
 UNBOUNDED = (-math.inf, math.inf)
 
@@ -28,12 +29,12 @@ def follow(
     interval: Any = UNBOUNDED,
     settings: ContinuationSettings | None = None,
     *,
-    parameter: str,
+    parameter: str | None = None,
     upward: bool | None = None,
     is_complete: Callable[[list[BranchOrbit]], bool] = lambda points: False,
     initial: Initial | None = None,
     settling: float | None = None,
-    start: str = "moving",
+    start: str | None = None,
     **by_name: Any,
 ) -> Branch:
     """Return the branch of an orbit, continued in both directions until a parameter leaves an interval.
@@ -75,11 +76,15 @@ def follow(
     >>> follow(model.at(a=0.08), (0.078, 0.084), parameter="a", initial="plus").ends[1].reason
     'closed'
     """
+    if not isinstance(orbit, PeriodicOrbit):
+        instance_of(orbit, Model, "orbit")
+    if parameter is None:
+        raise ValueError("parameter: missing, expected the name of a parameter of the model, such as a")
     settings = settings_of(ContinuationSettings, settings, by_name)
     if isinstance(orbit, Model):
-        orbit = _settled_orbit(_within(orbit, parameter, interval), initial, start, settling)
+        orbit = _settled_orbit(_within(orbit, parameter, interval), initial, start or "moving", settling)
     else:
-        for name, value in {"initial": initial, "settling": settling}.items():
+        for name, value in {"initial": initial, "settling": settling, "start": start}.items():
             if value is not None:
                 raise ValueError(f"{name}: got {format_value(value)} together with an orbit, expected none")
     if not callable(is_complete):

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any, TypeVar
 
 from burridge_knopoff.messages import full_key, suggestion
+from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.values import instance_of
 
@@ -48,7 +49,12 @@ def settings_of(kind: type[_T], settings: _T | None, by_name: Mapping[str, Any])
     names = fields_of(kind)
     for name in by_name:
         if name not in names:
-            raise ValueError(
-                f"{full_key('', name)}: not a setting, expected {' | '.join(sorted(names))}{suggestion(name, names)}"
-            )
+            raise unknown_setting(name, sorted(names))
     return kind(**by_name) if settings is None else replace(settings, **by_name)  # type: ignore[type-var]
+
+
+def unknown_setting(name: str, names: Iterable[str]) -> ValueError:
+    """Return the error for an argument by name that is not among `names`; one that a model has belongs there."""
+    if name in ("a", "v", "contact", "law", "chain", *fields_of(Chain)):
+        return ValueError(f"{name}: not a setting, expected it in the model: Model(…, {name}=…)")
+    return ValueError(f"{full_key('', name)}: not a setting, expected {' | '.join(names)}{suggestion(name, names)}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -12,10 +13,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from burridge_knopoff.dataset.columns import common_attributes, over_grid
-from burridge_knopoff.dataset.law_attributes import has_a
 from burridge_knopoff.dataset.point import POINT_VARIABLES, point_attributes, point_values, run_coordinates
 from burridge_knopoff.dataset.variables import PERIOD, Variable, flag
-from burridge_knopoff.laws.law import recorded_a
+from burridge_knopoff.laws import Law
 from burridge_knopoff.library.keyword_settings import divide, settings_of, show_settings
 from burridge_knopoff.library.progress import Progress, progress_bar
 from burridge_knopoff.library.run import motion_of
@@ -63,6 +63,7 @@ _MOTION = {
 }
 # Variables and dimensions of the result, which no parameter of a law can be.
 _RESERVED = {*_COMMON, *_COMMON_DIMENSIONS, *_MOTION, "law", "initial"} - {"a", "v"}
+_ARGUMENTS = {*fields_of(Settings), "model", "initial", "settings", "motion", "cores", "progress"}
 _COORDINATES = {
     "law": Variable((), "O", "friction law"),
     "initial": Variable((), "O", "initial state"),
@@ -145,7 +146,7 @@ def sweep(
     for item in models:
         place = {"law": item.law.name} if len(models) > 1 else {}
         own = _values_for(item, parameters, models)
-        grids.append(_call_at(place, parameter_grid, item, own, fields_of(Settings), _RESERVED))
+        grids.append(_call_at(place, parameter_grid, item, own, _ARGUMENTS, _RESERVED))
     if has_several_names(initial):
         axes["initial"] = [*states]
     axes |= grids[0][1]
@@ -163,7 +164,9 @@ def sweep(
             return runs
 
         runs = map_in_threads(cores, run_from, range(0, len(points), size))
-    dataset = _dataset(axes, points[0], next(iter(states)), [*chained.from_iterable(runs)])
+    dataset = _dataset(
+        axes, [base.law for base, *_ in grids], points[0], next(iter(states)), [*chained.from_iterable(runs)]
+    )
     if remark := "; ".join(_remarks(states, axes)):
         dataset.attrs["remark"] = remark
     return dataset
@@ -190,11 +193,14 @@ def parameter_grid(
 
     The latter are of one block or spring, such as `mass[3]`, and take precedence over those of a sequence for all.
 
-    settings : names of the settings of the call, for messages
+    settings : names of the arguments of the call that are no parameters
     reserved : names of the result that no parameter with several values can have
 
     Raises ValueError, one line, for a wrong argument, and for a value that occurs twice.
     """
+    for name in model.law.names:
+        if name in settings:
+            raise ValueError(f"{name}: got a parameter of the law with the name of an argument, expected another name")
     for name in parameters:
         if not model.has_parameter(name):
             allowed = [format_parameter_names(model.parameter_names), *sorted(settings)]
@@ -265,22 +271,30 @@ def _run_together(
 
 def _dataset(
     axes: Mapping[str, list[Any]],
+    laws: Sequence[Law],
     point: _Point,
     state: str,
     runs: Sequence[tuple[Mapping[str, Any], Mapping[str, Any]]],
 ) -> xarray.Dataset:
     """Return the runs as a Dataset over the axes, with the attributes that are the same for all of them.
 
+    laws : a parameter in which they differ is a coordinate over law, NaN for a law without it
     point, state : the first point, and the name of its state, for the coordinates that do not vary
     """
     import xarray
 
     plain = {name: plain_name(name) for name in axes}
-    single = {"law": point.model.law.name, "initial": state, "a": recorded_a(point.model.law), "v": point.model.v}
-    if not any(has_a(attributes) for _, attributes in runs):
-        single.pop("a")
+    single = {"law": point.model.law.name, "initial": state, "v": point.model.v}
     coordinates = {name for name in single if name not in axes}
     data: dict[str, Any] = {name: ((), single[name], _COORDINATES[name].all_attributes()) for name in coordinates}
+    for name in {name for law in laws for name in law.names} - axes.keys() - _RESERVED:
+        numbers = [law.parameters.get(name, math.nan) for law in laws]
+        item = _COORDINATES.get(name, Variable((), "f8", f"parameter {name} of the law"))
+        if len(set(numbers)) > 1:
+            data[name] = "law", numbers, item.all_attributes()
+        elif name == "a":
+            data[name] = (), numbers[0], item.all_attributes()
+    coordinates |= data.keys()
     rows, attributes = zip(*runs, strict=True)
     first = rows[0]
     variables = {name: item for name, item in {**_COMMON, **_MOTION}.items() if name in first}

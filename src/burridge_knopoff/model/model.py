@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from burridge_knopoff.laws import FormulaLaw, GivenLaw, Law, law_of
-from burridge_knopoff.laws.law import MAX_SPEED, recorded_a
+from burridge_knopoff.laws.law import MAX_SPEED, check_names, recorded_a
 from burridge_knopoff.messages import format_value, full_key, refusal, suggestion
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.fields import check_fields, fields_of, settings
@@ -38,7 +38,19 @@ START = (
 )
 
 #: Names that the numbers of a law cannot have: those of a model, and of the arguments of functions of a model.
-RESERVED_NAMES = {*fields_of(Chain), "law", "chain", "v", "contact", "window", "initial", "start", "settings"}
+RESERVED_NAMES = {
+    *fields_of(Chain),
+    "law",
+    "chain",
+    "v",
+    "contact",
+    "name",
+    "model",
+    "window",
+    "initial",
+    "start",
+    "settings",
+}
 
 _ONE_NUMBER = "one number for the whole chain"
 
@@ -109,7 +121,7 @@ class Model(Unchanging):
                 raise ValueError(f"{name}: got a parameter of the law, expected another name than that of a setting")
         for name in of_law:
             if name not in names:
-                raise _unknown_parameter(name, (*names, "v", *CHAIN_PARAMETERS))
+                raise _unknown_parameter(name, (*names, "v", "contact", *fields_of(Chain)))
         own = law_of(law, **of_law)
         if chain is None:
             shape = {"blocks": 3} if of_chain.keys().isdisjoint(("blocks", "grid", "springs")) else {}
@@ -178,7 +190,8 @@ class Model(Unchanging):
                 if key != "blocks" and getattr(part, key) not in (of_model.default, None):
                     values[key] = getattr(part, key)
         own = f" {law.formula}" if isinstance(law, FormulaLaw) else ""
-        return ", ".join([f"{law.name} law{own}", *(f"{key} = {format_value(value)}" for key, value in values.items())])
+        numbers = (f"{key} = {format_value(value)}" for key, value in values.items())
+        return ", ".join([f"{law.name} law{own}", *(f"{key} open" for key in law.missing), *numbers])
 
     def parameter(self, name: str) -> float:
         """Return the value of a parameter.
@@ -208,8 +221,7 @@ class Model(Unchanging):
         takes precedence over a value for all of them. Raises ValueError, one line, for a name that is not a parameter
         of the model, a value out of range, and a parameter of the whole chain that has several values.
         """
-        if others:
-            raise ValueError(f"at: got {format_value(others[0])} without a name, expected a name, such as a=0.08")
+        check_names(others)
         of_driver: dict[str, Any] = {}
         of_chain: dict[str, Any] = {}
         of_law: dict[str, Any] = {}
@@ -373,6 +385,10 @@ def recorded_value(model: Model, parameter: str) -> float:
 
 
 def _unknown_parameter(name: str, names: Sequence[str]) -> ValueError:
+    if name in ("contact", *fields_of(Chain)):
+        return ValueError(
+            f"{name}: not a parameter that varies, expected it where the model is built: Model(…, {name}=…)"
+        )
     return ValueError(
         f"{full_key('', name)}: not a parameter of this model, expected {format_parameter_names(names)}"
         f"{suggestion(name, names)}"

@@ -98,6 +98,7 @@ def set_chain_parameters(chain: Chain, values: Mapping[str, Any]) -> Chain:
     changed = replace(chain, **{name: value for name, value in values.items() if not parse_indexed_name(name)})
     for name, value in values.items():
         if single := parse_indexed_name(name):
+            chain_parameter(changed, name)
             key, number = single
             of_all = numbers.setdefault(key, changed.parameter_values(key).tolist())
             of_all[number - 1] = CHAIN_PARAMETERS[key].form(value, name)

@@ -54,6 +54,8 @@ class ParameterLine:
 
     def place(self, model: Model) -> str:
         """Return the values of the parameters of a model as text for a message."""
+        if self.names == ("a",):
+            return model.place
         return ", ".join(f"{name} = {model.parameter(name)!r}" for name in self.names)
 
 
