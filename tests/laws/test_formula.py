@@ -51,6 +51,10 @@ def test_a_number_without_a_value_is_missing_where_it_is_needed():
     assert (law.missing, law.names, law.at(b=0.2)) == (("b",), ("b",), FormulaLaw("1 - b*u", name="mine", b=0.2))
     with refused("b: missing", "mine"):
         law(0.5)
+    # The order in which they are given does not count.
+    whole, later = FormulaLaw("1 - a*u - b*u - c*u", a=0.1, b=0.2, c=0.3), FormulaLaw("1 - a*u - b*u - c*u", c=0.3)
+    assert later.at(b=0.2).at(a=0.1) == whole
+    assert hash(later.at(b=0.2, a=0.1)) == hash(whole)
 
 
 def test_parameters_of_a_built_in_law():

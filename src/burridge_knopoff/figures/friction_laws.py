@@ -15,6 +15,7 @@ from matplotlib.lines import Line2D
 from burridge_knopoff.figures.palette import dashes, law_color, state_symbol
 from burridge_knopoff.figures.style import COLUMN, label_panels, legend_below, new_figure, styled
 from burridge_knopoff.laws import Law, law_of
+from burridge_knopoff.laws.law import law_at_recorded_a
 from burridge_knopoff.running.status import Status
 
 TITLE = "Friction laws"
@@ -54,13 +55,15 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
     least_friction = mean_distance["least_friction"].where(mean_distance["status"] == Status.COMPLETED)
     last = least_friction.sel(a=a_values[-1]).min("initial")
     # The velocity at which the friction falls to the least value in the runs.
-    reached = [SPEEDS[(_at(law, a_values[-1])(SPEEDS) <= last.sel(law=law.name).item()).argmax()] for law in laws]
+    reached = [
+        SPEEDS[(law_at_recorded_a(law, a_values[-1])(SPEEDS) <= last.sel(law=law.name).item()).argmax()] for law in laws
+    ]
     fastest = 1.1 * max(reached) or 3.0
     speed = np.linspace(0.0, fastest, 301)
     for n, law in enumerate(laws):
         look: Any = {"color": law_color(n), "linestyle": dashes(n)}
         for a in a_values:
-            upper.plot(speed, _at(law, a)(speed), **look)
+            upper.plot(speed, law_at_recorded_a(law, a)(speed), **look)
         for k, initial in enumerate(mean_distance["initial"].values):
             least = least_friction.sel(initial=initial, law=law.name)
             lower.plot(
@@ -69,7 +72,7 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
     upper.set(xlabel="velocity $U$′", ylabel=r"friction $\Phi$", xlim=(-0.05 * fastest, 1.25 * fastest))
     for a in a_values if any("a" in law.names for law in laws) else ():
         # A bracket joins the ends of the curves of one a.
-        ends = [_at(law, a)(speed[-1:])[0] for law in laws]
+        ends = [law_at_recorded_a(law, a)(speed[-1:])[0] for law in laws]
         upper.plot(2 * [1.03 * fastest], [min(ends), max(ends)], color="0.5", linewidth=0.7)
         at = (1.03 * fastest, np.mean([min(ends), max(ends)]))
         upper.annotate(f"$a={a:g}$", at, (3, 0), textcoords="offset points", va="center", fontsize=8.0)
@@ -94,7 +97,3 @@ def _entry(law: Law) -> str:
     lines = wrap(f"{law.name}: {law.words}", LETTERS, max_lines=LINES, placeholder=" …")
     # Symbols in italics, as in the axis labels.
     return "\n".join(re.sub(r"\b(\w?aU|[a-zUση])\b", r"$\1$", line) for line in lines)
-
-
-def _at(law: Law, a: float) -> Law:
-    return law.at(a=a) if "a" in law.names else law

@@ -146,7 +146,8 @@ class Law(Unchanging):
 
     @property
     def _key(self) -> tuple[object, ...]:
-        return self.name, self.formula, tuple(self.parameters.items())
+        # In whatever order they were given, at once or one after the other.
+        return self.name, self.formula, frozenset(self.parameters.items())
 
     def at(self, *others: Any, **parameters: float) -> Self:
         """Return the same law with other values of some of its parameters."""
@@ -265,3 +266,8 @@ def recorded_a(law: Law) -> float:
     """Return a of a law as files and their names have it: 0 for a law without a."""
     law.check_complete()
     return law.parameters.get("a", 0.0)
+
+
+def law_at_recorded_a(law: Law, a: float) -> Law:
+    """Return a law at an a of a file or a study, in which a law without a has any: it is the same at all."""
+    return law.at(a=a) if "a" in law.names else law

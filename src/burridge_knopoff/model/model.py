@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from burridge_knopoff.laws import FormulaLaw, GivenLaw, Law, law_of
-from burridge_knopoff.laws.law import MAX_SPEED, check_names, recorded_a
+from burridge_knopoff.laws.law import MAX_SPEED, check_names, law_at_recorded_a, recorded_a
 from burridge_knopoff.messages import format_value, full_key, refusal, suggestion
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.fields import check_fields, fields_of, settings
@@ -397,7 +397,7 @@ def _unknown_parameter(name: str, names: Sequence[str]) -> ValueError:
 
 def at_recorded_a(model: Model, a: float) -> Model:
     """Return a model at an a of a file or a study, in which a law without a has any: it is the same at all."""
-    return model.at(a=a) if "a" in model.law.names else model
+    return replace(model, law=law_at_recorded_a(model.law, a))
 
 
 @dataclass(frozen=True, eq=False)

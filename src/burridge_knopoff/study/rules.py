@@ -14,6 +14,7 @@ from typing import Any
 
 from burridge_knopoff.basins.initial_phases import has_free_ends
 from burridge_knopoff.laws import LAWS, law_of, unknown_law
+from burridge_knopoff.laws.law import law_at_recorded_a
 from burridge_knopoff.messages import cut, refusal, suggestion
 from burridge_knopoff.model.chain import BLOCKS, Chain
 from burridge_knopoff.model.distances import is_by_distance
@@ -134,8 +135,7 @@ def check_models(
         tapes = []
         for a in grid:
             with error_prefix("laws."):
-                law = law_of({name: laws[name]})
-                law = law.at(a=a) if "a" in law.names else law
+                law = law_at_recorded_a(law_of({name: laws[name]}), a)
                 for number in law.missing:
                     raise ValueError(f"{name}.{number}: missing, expected a number: the formula contains it")
                 tapes.append(law.tape)
@@ -161,8 +161,7 @@ def check_models(
         for name in names:
             for a in values:
                 with error_prefix(f"{key}.a: got {a:g}, at which laws."):
-                    law = law_of({name: laws[name]})
-                    law = law.at(a=a) if "a" in law.names else law
+                    law_at_recorded_a(law_of({name: laws[name]}), a)
     for name, state in config["initial"].items():
         with error_prefix(f"initial.{name}."):
             model.initial_coordinates(initial_state(name, **state))
